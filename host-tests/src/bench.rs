@@ -43,7 +43,7 @@ impl FirmwareBench {
     /// If there is no firmware.
     pub fn image_with(robot: &Robot) -> Image {
         let elf = Self::elf();
-        lizard_host::firmware::with_robot(&elf, robot)
+        lizard_host::firmware::read_with_robot(&elf, robot)
             .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
     }
 

@@ -16,15 +16,15 @@ use simulated_uno::{Edge, Image, Pin, SerialByte};
 
 use crate::robots::root;
 
-/// Cycles at the end of a run in which pulses are not compared, since a pulse may have ended on one simulator and not
-/// yet on the other.
+/// Cycles at the end of a run in which pulses are not compared: a pulse may have ended on one simulator, but not yet
+/// on the other.
 const IGNORED_END_CYCLES: u64 = 1_000;
 
-/// Cycles by which Timer1 starts later on avr8js, and so everything that the firmware does: simavr's Timer1 counts
-/// from the first cycle of the instruction that starts it, that of avr8js from the last cycle. The bytes are sent to
-/// avr8js later by as much, so that they arrive in the same state of the firmware. Then the outputs agree to the
-/// cycle, or not at all.
-pub const AVR8JS_LAG: i64 = 1;
+/// Delay of avr8js relative to simavr, cycles. simavr's Timer1 counts from the first cycle of the instruction that
+/// starts the timer; avr8js counts from the last cycle. The firmware's outputs have the same delay. The bytes are sent
+/// to avr8js later by this delay, so that they arrive in the same state of the firmware. The outputs must then agree
+/// to the cycle.
+pub const AVR8JS_LAG_CYCLES: i64 = 1;
 
 /// A pulse of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,10 +41,10 @@ impl fmt::Display for PinPulse {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             pin,
-            rise_cycle: rise,
+            rise_cycle,
             width,
         } = self;
-        write!(f, "{pin} rises at cycle {rise} for {width} cycles")
+        write!(f, "{pin} rises at cycle {rise_cycle} for {width} cycles")
     }
 }
 
@@ -61,25 +61,25 @@ pub struct Outputs {
 
 impl Outputs {
     /// Collects the outputs of a simulated UNO from its records since power-on.
-    pub fn new(edges: &[Edge], sent: &[SerialByte], end: u64) -> Self {
-        let mut rises = [None; 20];
+    pub fn new(edges: &[Edge], sent: &[SerialByte], end_cycle: u64) -> Self {
+        let mut rise_cycles = [None; 20];
         let mut pulses = Vec::new();
         for edge in edges {
-            let rise = &mut rises[usize::from(edge.pin.number())];
+            let rise_cycle = &mut rise_cycles[usize::from(edge.pin.number())];
             if edge.is_rising {
-                *rise = Some(edge.cycle);
-            } else if let Some(rise) = rise.take() {
+                *rise_cycle = Some(edge.cycle);
+            } else if let Some(rise_cycle) = rise_cycle.take() {
                 pulses.push(PinPulse {
                     pin: edge.pin,
-                    rise_cycle: rise,
-                    width: edge.cycle - rise,
+                    rise_cycle,
+                    width: edge.cycle - rise_cycle,
                 });
             }
         }
         Self {
             pulses,
             sent: sent.to_vec(),
-            end_cycle: end,
+            end_cycle,
         }
     }
 }
@@ -95,11 +95,11 @@ pub struct Avr8jsRun {
     pub cpu_ms: u64,
 }
 
-/// Runs an image on avr8js. `received` are the bytes sent to the UNO, each with the cycle at which it is complete on
-/// simavr; `end` is the cycle at which the run ends.
+/// Runs an image on avr8js until `end_cycle`. `received` are the bytes sent to the UNO, each with the cycle at which
+/// the byte is complete on simavr.
 ///
 /// # Errors
-/// Returns a message if a program is missing or fails, for example because avr8js cannot simulate a feature.
+/// Fails if a program is missing or fails, for example because avr8js cannot simulate a feature.
 pub fn run_on_avr8js(
     image: &Image,
     received: &[SerialByte],
@@ -118,7 +118,10 @@ pub fn run_on_avr8js(
         script += &format!("analogue {} {mv}\n", pin.number());
     }
     for SerialByte { cycle, byte } in received {
-        script += &format!("{} {byte:02x}\n", cycle.saturating_add_signed(AVR8JS_LAG));
+        script += &format!(
+            "{} {byte:02x}\n",
+            cycle.saturating_add_signed(AVR8JS_LAG_CYCLES)
+        );
     }
     script += &format!("end {end_cycle}\n");
     let output_text = run_program(
@@ -158,8 +161,8 @@ fn node() -> Result<Command, String> {
     Ok(Command::new("node"))
 }
 
-/// Runs a program on `input` and returns its output. `debian_package` is the Debian package that contains the
-/// program, for the error message.
+/// Runs a program with `input_text` as its standard input and returns its output. `debian_package` names the Debian
+/// package that contains the program, for the error message.
 fn run_program(
     command: &mut Command,
     debian_package: &str,
@@ -192,9 +195,9 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
     for line in output_text.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
-            ["pulse", pin, rise, width] => run.outputs.pulses.push(PinPulse {
+            ["pulse", pin, rise_cycle, width] => run.outputs.pulses.push(PinPulse {
                 pin: Pin::arduino(pin.parse().ok()?),
-                rise_cycle: rise.parse().ok()?,
+                rise_cycle: rise_cycle.parse().ok()?,
                 width: width.parse().ok()?,
             }),
             ["sent", cycle, byte] => run.outputs.sent.push(SerialByte {
@@ -222,30 +225,30 @@ pub struct Agreement {
     pub record_kind: &'static str,
     /// The number of records.
     pub count: usize,
-    /// Cycles by which the records of avr8js are later than those of simavr.
+    /// Cycles by which avr8js's first record is later than simavr's.
     pub offset_cycles: i64,
-    /// The largest deviation of a record from `offset`, cycles.
+    /// The largest deviation of a record's delay from `offset_cycles`.
     pub jitter_cycles: u64,
 }
 
 impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            record_kind: what,
+            record_kind,
             count,
-            offset_cycles: offset,
-            jitter_cycles: jitter,
+            offset_cycles,
+            jitter_cycles,
         } = self;
         write!(
             f,
-            "{count} {what} {offset} cycles later, {jitter} more or less"
+            "{count} {record_kind} {offset_cycles} cycles later, {jitter_cycles} more or less"
         )
     }
 }
 
-/// Compares the servos' pulses to the cycle: their pins, their order, their widths, and their rising edges except
-/// for a constant offset. The offset is allowed because the data sheet does not specify in which cycle of an
-/// instruction a peripheral receives a write.
+/// Compares the servos' pulses to the cycle: their pins, order, widths and rising edges. The rising edges may have a
+/// constant offset, because the data sheet does not specify in which cycle of an instruction a peripheral receives a
+/// write.
 ///
 /// # Errors
 /// Returns a message about the first difference.
@@ -263,11 +266,11 @@ pub fn compare_pulses(
     else {
         return Err("on one of them no servo gets a pulse".into());
     };
-    let offset = first_avr8js.rise_cycle as i64 - first_simavr.rise_cycle as i64;
+    let offset_cycles = first_avr8js.rise_cycle as i64 - first_simavr.rise_cycle as i64;
     let avr8js_pulses: Vec<PinPulse> = avr8js_pulses
         .iter()
         .map(|pulse| PinPulse {
-            rise_cycle: pulse.rise_cycle.saturating_add_signed(-offset),
+            rise_cycle: pulse.rise_cycle.saturating_add_signed(-offset_cycles),
             ..*pulse
         })
         .collect();
@@ -282,24 +285,25 @@ pub fn compare_pulses(
         .find(|(_, (simavr_pulse, avr8js_pulse))| simavr_pulse != avr8js_pulse)
     {
         return Err(format!(
-            "pulse {index}: on simavr {simavr_pulse}, on avr8js {avr8js_pulse}, where all come {offset} cycles later"
+            "pulse {index}: on simavr {simavr_pulse}, on avr8js {avr8js_pulse}, \
+             where all come {offset_cycles} cycles later"
         ));
     }
     let count = simavr_pulses.len().min(avr8js_pulses.len());
     for (name, pulses) in [("simavr", &simavr_pulses), ("avr8js", &avr8js_pulses)] {
-        if let Some(next) = pulses.get(count) {
-            return Err(format!("pulse {count} is on {name} alone: {next}"));
+        if let Some(extra_pulse) = pulses.get(count) {
+            return Err(format!("pulse {count} is on {name} alone: {extra_pulse}"));
         }
     }
     Ok(Agreement {
         record_kind: "pulses",
         count,
-        offset_cycles: offset,
+        offset_cycles,
         jitter_cycles: 0,
     })
 }
 
-/// Compares the bytes that the console has sent, and measures the deviation of their times from a constant offset.
+/// Compares the bytes that the console has sent, and measures by how much their delay varies.
 ///
 /// # Errors
 /// Returns a message about the first difference.
@@ -308,9 +312,9 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
     else {
         return Err("one of them is silent".into());
     };
-    let offset = first_avr8js.cycle as i64 - first_simavr.cycle as i64;
+    let offset_cycles = first_avr8js.cycle as i64 - first_simavr.cycle as i64;
     let pairs = simavr.sent.iter().zip(&avr8js.sent);
-    let mut jitter = 0;
+    let mut jitter_cycles = 0;
     for (index, (simavr_byte, avr8js_byte)) in pairs.enumerate() {
         if simavr_byte.byte != avr8js_byte.byte {
             return Err(format!(
@@ -320,10 +324,10 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
                 tail(&avr8js.sent, index)
             ));
         }
-        jitter = jitter.max(
+        jitter_cycles = jitter_cycles.max(
             avr8js_byte
                 .cycle
-                .saturating_add_signed(-offset)
+                .saturating_add_signed(-offset_cycles)
                 .abs_diff(simavr_byte.cycle),
         );
     }
@@ -339,12 +343,12 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
     Ok(Agreement {
         record_kind: "bytes",
         count,
-        offset_cycles: offset,
-        jitter_cycles: jitter,
+        offset_cycles,
+        jitter_cycles,
     })
 }
 
-/// Returns the pulses that have ended by a cycle.
+/// Returns the pulses that have ended by `limit_cycle`.
 fn ended_pulses(pulses: &[PinPulse], limit_cycle: u64) -> Vec<PinPulse> {
     let pulses = pulses.iter().copied();
     pulses
@@ -352,7 +356,7 @@ fn ended_pulses(pulses: &[PinPulse], limit_cycle: u64) -> Vec<PinPulse> {
         .collect()
 }
 
-/// Returns the last 60 bytes, about a line, of the text up to byte `index`.
+/// Returns the 60 bytes, about a line, that end with byte `index`.
 fn tail(bytes: &[SerialByte], index: usize) -> String {
     let end = bytes.len().min(index + 1);
     let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]

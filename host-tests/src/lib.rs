@@ -9,8 +9,10 @@ pub mod random_robot;
 mod robots;
 
 pub use bench::{FirmwareBench, bench_of};
-pub use extent::{minutes, scaled};
+pub use extent::{dialogue_minutes, read_number, scaled};
 pub use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 pub use lizard_host::sim::lines::Line;
-pub use robots::{Named, paper, patrol_of, patrolling, rng, robot, robots, root, seed};
+pub use robots::{
+    NamedRobot, paper_robot, patrolling_robot, rng, robot, robot_with_patrol, robots, root, seed,
+};
 pub mod trouble;

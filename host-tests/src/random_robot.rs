@@ -1,11 +1,10 @@
 //! Generator of random, valid robots without symmetry.
 //!
-//! In the paper's robot, left equals right, head equals tail and every limit of a margin is 0.3, so code that
-//! exchanges two of these numbers by mistake works all the same. In a random robot the lengths, servos and limits
-//! differ, except that both sides of the chassis are equal and the leg stays a parallelogram. A robot is written as
-//! the text of a robot.toml and read by [`Robot::parse`], which rejects invalid robots, so each result is a robot
-//! that a builder could have. Each robot has a gait that moves, and about half of the robots measure their servos'
-//! rail.
+//! In the paper's robot, left equals right, head equals tail and every margin's limit is 0.3. Code that confuses two of
+//! these numbers still works with that robot. In a random robot all lengths, servos and limits differ, except that both
+//! sides of the chassis are equal and the leg is a parallelogram. The generator writes the text of a robot.toml, and
+//! [`Robot::parse`] rejects invalid robots, so each result is a robot that a builder could have. Each robot has a gait
+//! that moves, and about half of the robots measure the voltage of their servos' rail.
 
 use std::fmt::Write;
 
@@ -15,7 +14,7 @@ use lizard_core::numbers::section::SPACE_BYTES;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
 
-/// Number of drafts of a robot after which the search ends.
+/// Number of drafts of a robot after which the search fails.
 const MAX_DRAFTS: usize = 1000;
 
 /// The pins to which a servo may be connected.
@@ -24,14 +23,16 @@ const PINS: [&str; 17] = [
     "A4", "A5",
 ];
 
-/// Names of the servos in robot.toml, in servo order; `LEGS` are the names of their legs.
+/// Names of the servos in robot.toml.
 const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
+
+/// Names of the legs in robot.toml, in the order of their servos.
 const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
-/// Returns a random valid robot and the text that it was read from.
+/// Returns a random valid robot and the text of its robot.toml.
 ///
 /// # Panics
-/// If no draft is a valid robot, which means that the generator has an error.
+/// If no draft is a valid robot, which would be an error of the generator.
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..MAX_DRAFTS)
         .find_map(|_| {
@@ -48,23 +49,23 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
             let has_moving_gait = robot.gaits().iter().any(|gait| gait.has_movement());
             has_moving_gait.then_some((text, robot))
         })
-        .expect("one draft in a few is a valid robot")
+        .expect("many drafts are valid robots")
 }
 
-/// Returns a robot with as many additional gaits as the board has room for, so that no room is left for the maps
-/// of certified cells. The names of these gaits have `length` characters and differ only in the last two.
+/// Returns a robot with as many additional gaits as flash has room for. No room is left for the maps of certified
+/// cells. The names of the additional gaits have `name_length` characters and differ only in the last two.
 ///
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
-pub fn with_many_gaits(text: &str, length: usize) -> Robot {
+pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
     let robot = Robot::parse(text).expect("a valid robot");
     let gait = robot.gaits().iter().find(|gait| gait.has_movement());
     let gait_name = gait.expect("a gait that moves").name();
-    // Leaves room for one waveform more, in case the additional gaits need their own.
+    // Leaves room for one more waveform, which the additional gaits may need.
     let taken_bytes = robot.content().section_bytes().len() + size_of::<Wave>();
     let room_bytes = usize::from(SPACE_BYTES).saturating_sub(taken_bytes);
-    let gaits = (0..room_bytes / (size_of::<Gait>() + length)).map(|number| {
-        let name = format!("{:n<1$}{number:02}", "on-and-o", length - 2);
+    let gaits = (0..room_bytes / (size_of::<Gait>() + name_length)).map(|number| {
+        let name = format!("{:n<1$}{number:02}", "on-and-o", name_length - 2);
         format!("[gait.{name}]\nlike = \"{gait_name}\"\n")
     });
     Robot::parse(&format!("{text}{}", gaits.collect::<String>())).expect("more of the same gait")
@@ -84,7 +85,7 @@ struct Body {
 }
 
 impl Body {
-    /// Returns a random robot that can stand; `None` if no safe neutral pose was found.
+    /// Returns a random body with a safe neutral pose; `None` if no such pose was found.
     fn random(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
         let mut random_length = |min: f64, max: f64| round(scale * random_between(rng, min, max));
@@ -125,7 +126,7 @@ impl Body {
             let first_share = random_between(rng, 0.35, 0.65);
             links[halves[0]] = round(nominal_length * first_share);
             links[halves[1]] = round(nominal_length * (1.0 - first_share));
-            // Limits how far a slider may shorten, so that its length stays positive.
+            // The shortest length of a slider must be positive.
             limits.stroke_min = limits.stroke_min.max(-round(0.8 * nominal_length));
         }
         lizard.links = Links::from(links);
@@ -207,10 +208,10 @@ impl Body {
     }
 }
 
-/// Returns a random neutral pose, deg, whose margins exceed their limits by at least `ROOM`; `None` if no such pose
-/// was found. The strokes are not checked.
+/// Returns the angles of a random neutral pose, deg. Its margins exceed their limits by at least `ROOM`; the strokes
+/// are not checked. `None` if no such pose was found.
 fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
-    /// Least distance of every margin from its limit, a sine.
+    /// Minimum distance of every margin from its limit, a sine.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
         let [left_deg, right_deg, rear_left_deg, rear_right_deg] =
@@ -267,7 +268,7 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     let mut random_factors = |min: f64, max: f64| -> [f64; 4] {
         std::array::from_fn(|_| round_factor(random_between(rng, min, max)))
     };
-    let (starts, gains, halves) = (
+    let (wave_starts, wave_gains, held_gains) = (
         random_factors(0.0, 1.0),
         random_factors(0.4, 1.0),
         random_factors(-1.0, 1.0),
@@ -276,15 +277,15 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
         "[gait.wander]\nperiod = {}\nwaveform = \"wave\"\nduty = {}\nstart = {}\ngain = {}",
         random_period(rng),
         round_factor(random_between(rng, 0.5, 0.85)),
-        table_of_legs(starts),
-        table_of_legs(gains),
+        table_of_legs(wave_starts),
+        table_of_legs(wave_gains),
     );
     let mut order = LEGS;
     rng.shuffle(&mut order);
     let held_text = format!(
         "[gait.creep-along]\nperiod = {}\nwaveform = \"held\"\norder = {order:?}\ngain = {}",
         random_period(rng),
-        table_of_legs(halves),
+        table_of_legs(held_gains),
     );
     for gait_text in [wave_text, held_text] {
         gaits.push(Box::new(move |size| {
@@ -328,13 +329,13 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     gaits
 }
 
-/// Returns the text of a robot with one gait more, of the largest size that the robot allows, or the unchanged text
-/// if the gait is rejected at every size.
+/// Returns a robot's text with one more gait, of the largest size that the robot allows. Returns the text unchanged if
+/// the gait is rejected at every size.
 fn with_allowed_gait(text: String, gait: &GaitOfSize) -> String {
     [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
         .into_iter()
         .map(|size| format!("{text}{}\n", gait(size)))
-        .find(|longer| Robot::parse(longer).is_ok())
+        .find(|longer_text| Robot::parse(longer_text).is_ok())
         .unwrap_or(text)
 }
 
@@ -347,12 +348,12 @@ fn random_between(rng: &mut Rng, min: f64, max: f64) -> f64 {
     min + (max - min) * rng.f64()
 }
 
-/// Rounds a length or an angle as a person would write it.
+/// Rounds a length or an angle to the precision of a file written by hand.
 fn round(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// Rounds a factor as a person would write it.
+/// Rounds a factor to the precision of a file written by hand.
 fn round_factor(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

@@ -1,4 +1,4 @@
-//! The robots under test.
+//! Robots under test: those of the repository's files, and random ones.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -9,13 +9,13 @@ use lizard_robot::{Robot, edit::without_gait};
 
 use crate::random_robot::random_robot;
 
-/// Number of random robots in a run.
-const RANDOM_ROBOTS: u64 = 8;
+/// Number of random robots in a test run.
+const RANDOM_ROBOT_COUNT: u64 = 8;
 
-/// A robot and its name in messages.
+/// A robot under test and its name in messages.
 #[derive(Debug)]
-pub struct Named {
-    /// The name for messages, such as the robot's file.
+pub struct NamedRobot {
+    /// The name in messages: the robot's file, or the number of a random robot.
     pub name: String,
     /// The robot.
     pub robot: Robot,
@@ -26,9 +26,9 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The robot under test: the file that `LIZARD_ROBOT` names, relative to the root of the
-/// repository, or else the repository's robot.toml. `make test ROBOT=...` sets the variable,
-/// and builds the firmware from the same file.
+/// The robot under test. Its file is the one that `LIZARD_ROBOT` names, relative to the root of the repository, or
+/// robot.toml if the variable is not set. `make test ROBOT=...` sets the variable and builds the firmware from the same
+/// file.
 ///
 /// # Panics
 /// If the file is missing or invalid.
@@ -37,25 +37,24 @@ pub fn robot() -> &'static Robot {
     &ROBOT
 }
 
-/// The robot under test with two inputs and a routine added. If flash has no room for them, some
-/// gaits are removed.
+/// The robot under test with two inputs and a routine added. Gaits are removed if flash has no room for the routine.
 ///
 /// # Panics
 /// If there is no room even with one gait.
-pub fn patrolling() -> &'static Robot {
+pub fn patrolling_robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
         let text = std::fs::read_to_string(robot_file()).expect("a robot.toml");
-        patrol_of(&text).unwrap_or_else(|error| panic!("{error}"))
+        robot_with_patrol(&text).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
 }
 
-/// The robot of a robot.toml's text with two inputs and a routine added, and with as many of its gaits as there is
-/// room for.
+/// Returns the robot of a robot.toml's text with two inputs and a routine added. Its last gaits are removed one by one
+/// until flash has room for the routine.
 ///
 /// # Errors
-/// Fails if there is no room even with one gait, or if the text is no valid robot.
-pub fn patrol_of(text: &str) -> Result<Robot, lizard_robot::Error> {
+/// Fails if there is no room even with one gait, or if the text is not a valid robot.
+pub fn robot_with_patrol(text: &str) -> Result<Robot, lizard_robot::Error> {
     const REST: &str = "rest 1 s";
     with_patrol(text, &[REST]).or_else(|error| {
         let robot = Robot::parse(text)?;
@@ -65,7 +64,7 @@ pub fn patrol_of(text: &str) -> Result<Robot, lizard_robot::Error> {
         let shorter_text = shorter_texts
             .find(|text| Robot::parse(text).is_ok())
             .ok_or(error)?;
-        patrol_of(&shorter_text)
+        robot_with_patrol(&shorter_text)
     })
 }
 
@@ -78,19 +77,19 @@ fn robot_file() -> PathBuf {
 ///
 /// # Panics
 /// If robots/paper.toml is missing or invalid.
-pub fn paper() -> &'static Robot {
+pub fn paper_robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&root().join("robots/paper.toml")));
     &ROBOT
 }
 
-/// The robot under test, every robot in robots/, and random robots, which are the same in every
-/// run with the same [`seed`].
+/// The robot under test, every robot in robots/, and random robots. The random robots are the same in every run with
+/// the same [`seed`].
 ///
 /// # Panics
-/// If one of the files is invalid; the message names it.
-pub fn robots() -> &'static [Named] {
-    static ROBOTS: LazyLock<Vec<Named>> = LazyLock::new(|| {
-        let mut robots = vec![Named {
+/// If a file is invalid. The message names the file.
+pub fn robots() -> &'static [NamedRobot] {
+    static ROBOTS: LazyLock<Vec<NamedRobot>> = LazyLock::new(|| {
+        let mut robots = vec![NamedRobot {
             name: "the robot under test".into(),
             robot: robot().clone(),
         }];
@@ -106,14 +105,14 @@ pub fn robots() -> &'static [Named] {
         files.sort();
         assert!(!files.is_empty(), "{} has robots", folder.display());
         robots.extend(files.iter().map(|path| {
-            Named {
+            NamedRobot {
                 name: path
                     .file_name()
                     .map_or_else(String::new, |name| name.to_string_lossy().into()),
                 robot: load(path),
             }
         }));
-        robots.extend((0..RANDOM_ROBOTS).map(|number| Named {
+        robots.extend((0..RANDOM_ROBOT_COUNT).map(|number| NamedRobot {
             name: format!("random robot {number} of seed {}", seed()),
             robot: random_robot(&mut rng(number)).1,
         }));

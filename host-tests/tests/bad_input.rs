@@ -1,8 +1,8 @@
-//! Robustness test of the core, compiled for this machine: two million random bytes, two million lines that are
-//! nearly valid and two thousand EEPROM contents. Each line must get one answer, no pulse may be outside the limits,
-//! and the EEPROM must always be valid.
+//! Robustness tests of the core, compiled for this machine: two million random bytes, two million lines that are nearly
+//! valid and two thousand EEPROM contents. Each line must get one answer, no pulse may be outside the limits, and the
+//! EEPROM must always be valid.
 //!
-//! With `LIZARD_FUZZ=3`, as in continuous integration, the test takes three times as many inputs.
+//! With `LIZARD_FUZZ=3`, as in continuous integration, the tests take three times as many inputs.
 
 use std::thread;
 
@@ -16,24 +16,24 @@ use lizard_host_tests::{robot, scaled};
 mod random_lines;
 
 /// The number of bytes, the number of lines, and a thousand times the number of EEPROM contents.
-const COUNT: u64 = 2_000_000;
+const INPUT_COUNT: u64 = 2_000_000;
 
-/// Number of threads on which a test runs.
-const THREADS: u64 = 2;
+/// Number of threads of a test.
+const THREAD_COUNT: u64 = 2;
 
 /// Runs a test on several threads, each with its own random numbers and its share of the count.
 fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
-        let run = |number| {
+        let spawn_test = |thread_number| {
             let test = &test;
             scope.spawn(move || {
                 test(
-                    &mut lizard_host_tests::rng(1000 + number),
-                    scaled(COUNT) / THREADS,
+                    &mut lizard_host_tests::rng(1000 + thread_number),
+                    scaled(INPUT_COUNT) / THREAD_COUNT,
                 )
             })
         };
-        let handles: Vec<_> = (0..THREADS).map(run).collect();
+        let handles: Vec<_> = (0..THREAD_COUNT).map(spawn_test).collect();
         for handle in handles {
             assert!(handle.join().is_ok());
         }
@@ -64,16 +64,16 @@ fn millions_of_random_bytes_do_no_harm_to_the_core() {
 }
 
 #[test]
-fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
+fn millions_of_lines_that_are_nearly_valid_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
         let mut board = Board::new(robot(), Eeprom::blank());
-        let mut accepted = 0u64;
+        let mut accepted_count = 0u64;
         for n in 0..count {
             for byte in random_lines::nearly_valid_line(rng) {
                 board.send_byte(byte);
             }
             board.send_byte(b'\n');
-            accepted += u64::from(board.output().contains("ok "));
+            accepted_count += u64::from(board.output().contains("ok "));
             if n % 16 == 0 {
                 board.run_frame();
             }
@@ -81,7 +81,7 @@ fn millions_of_lines_that_are_nearly_right_do_no_harm_to_the_core() {
                 board.assert_memory_is_valid();
             }
         }
-        assert!(accepted > count / 4, "{accepted} of {count}");
+        assert!(accepted_count > count / 4, "{accepted_count} of {count}");
     });
 }
 

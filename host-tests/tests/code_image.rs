@@ -1,13 +1,13 @@
-//! Tests that the firmware's code inside the program `lizard` is the code that the source builds.
+//! Tests that the program `lizard` contains the same firmware code as the source builds.
 //!
-//! Users without a compiler get `firmware/code.hex`. If the source were changed but not this file, nobody would
-//! notice until a board behaves differently from the source.
+//! The program contains `firmware/code.hex`, for users without a compiler. If the source changes and this file does
+//! not, a board behaves differently from the source.
 
 use std::io::Write as _;
 use std::process::Command;
 
 use lizard_core::numbers::section::START_ADDRESS;
-use lizard_host::firmware::CODE;
+use lizard_host::firmware::CODE_HEX;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::{Recording, play};
@@ -16,19 +16,19 @@ use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, State, Uno};
 
 /// The failure message if `firmware/code.hex` is out of date.
-const RENEW: &str =
+const OUT_OF_DATE_MESSAGE: &str =
     "firmware/code.hex is not what the source builds: run `make code-image` and commit it";
 
-/// Returns the code of an image, from address 0 to the robot's section; 0xff in unused bytes.
+/// Returns the code of an image, from address 0 to the robot's section. Unused bytes are 0xff.
 fn code_of(image: &Image) -> Vec<u8> {
     let mut flash = image.flash();
     flash.resize(START_ADDRESS.into(), 0xff);
     flash
 }
 
-/// Returns the image inside the program `lizard`, with the section of the robot under test added.
+/// Returns the image that the program `lizard` contains, with the section of the robot under test added.
 fn embedded_image() -> Image {
-    let mut image = Image::parse_hex(CODE).expect("it is Intel HEX");
+    let mut image = Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX");
     let space = u32::from(START_ADDRESS)..0x7e00;
     image
         .replace(space, &robot().section())
@@ -37,14 +37,14 @@ fn embedded_image() -> Image {
 }
 
 /// Returns the versions of the installed compiler and linker, one per line.
-fn installed_tools() -> String {
+fn installed_tool_versions() -> String {
     let script = root().join("scripts/code-image");
     let output = Command::new(script)
         .arg("--tools")
         .arg(FirmwareBench::elf())
         .output();
     let output = output.expect("scripts/code-image runs");
-    let output_text = String::from_utf8(output.stdout).expect("it is text");
+    let output_text = String::from_utf8(output.stdout).expect("the output is UTF-8");
     assert!(output_text.starts_with("rustc version "), "{output_text}");
     output_text
 }
@@ -74,54 +74,54 @@ fn record_minute(image: Image) -> Recording {
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
     let pins = servo_pins(robot());
-    let recording = play(&mut uno, pins, &script, |_| Ok(())).expect("it is not written");
+    let recording = play(&mut uno, pins, &script, |_| Ok(())).expect("nothing is written");
     assert_eq!(recording.state, State::Alive);
     recording
 }
 
 #[test]
-fn the_code_inside_the_program_is_what_the_source_builds() {
-    let inside_code = code_of(&Image::parse_hex(CODE).expect("it is Intel HEX"));
+fn the_program_contains_the_code_that_the_source_builds() {
+    let embedded_code = code_of(&Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX"));
     let mut built_image = FirmwareBench::image();
     built_image
         .replace(u32::from(START_ADDRESS)..0x7e00, &[])
-        .expect("the robot is taken out");
+        .expect("the robot is removed");
     let built_code = code_of(&built_image);
-    let recorded_tools = std::fs::read_to_string(root().join("firmware/tools.txt"));
-    let recorded_tools = recorded_tools.expect("firmware/tools.txt");
-    if recorded_tools == installed_tools() {
+    let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
+    let recorded_versions = recorded_versions.expect("firmware/tools.txt");
+    if recorded_versions == installed_tool_versions() {
         let first_difference =
-            (0..START_ADDRESS.into()).find(|&index| inside_code[index] != built_code[index]);
+            (0..START_ADDRESS.into()).find(|&index| embedded_code[index] != built_code[index]);
         assert_eq!(
             first_difference, None,
-            "{RENEW} (the first byte that differs)"
+            "{OUT_OF_DATE_MESSAGE} (the first byte that differs)"
         );
         return;
     }
-    // The test harness would hide the output of `eprintln!` if the test passes, so this writes to stderr directly.
+    // Writes to stderr directly, because the test harness hides the output of `eprintln!` if the test passes.
     let note = format!(
         "code_image: firmware/code.hex was made by other tools than those here, so its bytes are \
-         not compared, but what both do in a minute. It was made by\n{recorded_tools}and here are\n{}",
-        installed_tools()
+         not compared, but what both do in a minute. It was made by\n{recorded_versions}and here are\n{}",
+        installed_tool_versions()
     );
     std::io::stderr()
         .write_all(note.as_bytes())
-        .expect("it is said");
-    let [inside_recording, built_recording] =
+        .expect("stderr works");
+    let [embedded_recording, built_recording] =
         [embedded_image(), FirmwareBench::image()].map(record_minute);
     assert_eq!(
-        inside_recording.banner, built_recording.banner,
-        "{RENEW} (its banner)"
+        embedded_recording.banner, built_recording.banner,
+        "{OUT_OF_DATE_MESSAGE} (its banner)"
     );
     assert_eq!(
-        inside_recording.answers, built_recording.answers,
-        "{RENEW} (its answers)"
+        embedded_recording.answers, built_recording.answers,
+        "{OUT_OF_DATE_MESSAGE} (its answers)"
     );
     assert_eq!(
-        inside_recording.frames.widths.len(),
+        embedded_recording.frames.widths.len(),
         built_recording.frames.widths.len()
     );
-    for (index, (inside_widths, built_widths)) in inside_recording
+    for (index, (embedded_widths, built_widths)) in embedded_recording
         .frames
         .widths
         .iter()
@@ -129,14 +129,14 @@ fn the_code_inside_the_program_is_what_the_source_builds() {
         .enumerate()
     {
         assert_eq!(
-            inside_widths, built_widths,
-            "{RENEW} (the pulses of frame {index})"
+            embedded_widths, built_widths,
+            "{OUT_OF_DATE_MESSAGE} (the pulses of frame {index})"
         );
     }
 }
 
 #[test]
-fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_after_it() {
+fn the_code_in_the_program_has_no_robot_and_walks_with_a_robot_added() {
     let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("a banner");
     let robot_label = lizard_host::firmware::robot_label(robot().firmware());
@@ -145,7 +145,9 @@ fn the_code_inside_the_program_is_code_alone_and_walks_with_a_robot_after_it() {
         "{banner}"
     );
     assert!(recording.frames.widths.len() > 2700);
-    let code = Image::parse_hex(CODE).expect("it is Intel HEX").flash();
+    let code = Image::parse_hex(CODE_HEX)
+        .expect("code.hex is Intel HEX")
+        .flash();
     assert!(
         (20_000..=usize::from(START_ADDRESS)).contains(&code.len()),
         "{} bytes",

@@ -1,4 +1,4 @@
-//! Consistency of the documentation: its pages name only tests, items, links and files that exist.
+//! Tests of the documentation: its pages name only tests, code items, links and files that exist.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,13 +14,13 @@ use lizard_host_tests::root;
 fn every_fault_in_the_documentation_names_an_existing_test() {
     let page = fs::read_to_string(root().join("docs/faults.md")).expect("the page");
     let (_, table) = page.split_once("## Each of them").expect("the table");
-    let (table, _) = table.split_once("\n## ").expect("what follows it");
+    let (table, _) = table.split_once("\n## ").expect("the next section");
     let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
     let mut count = 0;
     for row in rows {
-        let pieces: Vec<&str> = row.split('`').collect();
-        let [.., file, _, test, _] = pieces[..] else {
-            panic!("no test: {row}");
+        let parts: Vec<&str> = row.split('`').collect();
+        let [.., file, _, test, _] = parts[..] else {
+            panic!("the row names no test: {row}");
         };
         let folders = [
             root().join("host-tests/tests"),
@@ -39,8 +39,8 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
     assert!(count > 20, "{count}");
 }
 
-/// Makes the rows `| offset | bytes | field |` of a type, in the order of the fields given. The pattern must name
-/// every field to compile, so no field can be forgotten.
+/// Makes the table rows `| offset | bytes | field |` of a type, in the order of the given fields. The code compiles
+/// only if every field is given.
 macro_rules! rows {
     ($type:ident, $start:expr, [$($field:ident),+ $(,)?]) => {{
         let _ = |$type { $($field: _),+ }: &$type| ();
@@ -48,19 +48,20 @@ macro_rules! rows {
             format!(
                 "| {} | {} | `{}` |",
                 $start + offset_of!($type, $field),
-                size(|value: &$type| &value.$field),
+                field_size(|value: &$type| &value.$field),
                 stringify!($field)
             )
         ),+]
     }};
 }
 
-fn size<T, F>(_: fn(&T) -> &F) -> usize {
+/// Returns the size of the field that a getter returns, bytes.
+fn field_size<T, F>(_: fn(&T) -> &F) -> usize {
     size_of::<F>()
 }
 
 #[test]
-fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
+fn the_page_of_the_firmware_has_the_offset_and_size_of_every_field_of_a_robots_section() {
     let header = rows!(
         Header,
         0,
@@ -112,21 +113,25 @@ fn the_page_of_the_firmware_has_every_field_of_a_robots_section_at_its_place() {
     );
 }
 
-/// Splits a text into words. Dashes, underscores and slashes are part of a word, as in the paths of crates.
-fn identifiers(text: &str) -> BTreeSet<&str> {
+/// Returns the words of a text. Dashes, underscores and slashes are part of a word, as in the paths of crates.
+fn words_of(text: &str) -> BTreeSet<&str> {
     let is_separator = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
     text.split(is_separator).collect()
 }
 
 #[test]
-fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
+fn the_license_says_of_every_crate_whether_it_contains_libsimavr() {
     let license = fs::read_to_string(root().join("LICENSE")).expect("the file");
     let (_, text) = license.split_once("therefore licensed").expect("libsimavr");
-    let (text_with, text_without) = text.split_once("The firmware").expect("both sides");
-    let (names_with, names_without) = (identifiers(text_with), identifiers(text_without));
+    let (text_about_simavr_users, text_about_others) =
+        text.split_once("The firmware").expect("both lists");
+    let (simavr_users, others) = (
+        words_of(text_about_simavr_users),
+        words_of(text_about_others),
+    );
     let workspace = fs::read_to_string(root().join("crates/Cargo.toml")).expect("the workspace");
-    let (_, members) = workspace.split_once("members = [").expect("its members");
-    let (members, _) = members.split_once(']').expect("their end");
+    let (_, members) = workspace.split_once("members = [").expect("the members");
+    let (members, _) = members.split_once(']').expect("the end of the members");
     let folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
     assert!(folders.len() > 9, "{folders:?}");
     for folder in folders {
@@ -136,13 +141,13 @@ fn the_license_names_every_crate_on_the_side_of_libsimavr_where_it_is() {
         };
         let manifest = fs::read_to_string(root().join(&name).join("Cargo.toml")).expect(&name);
         let uses_simavr = name == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
-        let word = &*format!("{name}/");
-        let is_listed = [
-            names_with.contains(word) || name == "crates/simulated-uno",
-            names_without.contains(word),
+        let path = &*format!("{name}/");
+        let is_in_lists = [
+            simavr_users.contains(path) || name == "crates/simulated-uno",
+            others.contains(path),
         ];
         assert_eq!(
-            is_listed,
+            is_in_lists,
             [uses_simavr, !uses_simavr],
             "LICENSE and {name}/Cargo.toml"
         );
@@ -154,9 +159,9 @@ fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
     let mut count = 0;
     let pages = fs::read_dir(root().join("docs")).expect("docs/");
     let pages = pages.map(|page| page.expect("a page").path());
-    for page in pages.filter(|page| page.extension().is_some_and(|end| end == "md")) {
+    for page in pages.filter(|page| page.extension().is_some_and(|extension| extension == "md")) {
         let text = fs::read_to_string(&page).expect("a page");
-        for path in text.split('`').filter(|span| span.starts_with("lizard_")) {
+        for path in text.split('`').filter(|code| code.starts_with("lizard_")) {
             let Some((crate_name, item)) = path
                 .strip_prefix("lizard_")
                 .and_then(|path| path.split_once("::"))
@@ -188,8 +193,8 @@ fn read_sources(folder: &Path) -> String {
         .collect()
 }
 
-/// Returns the files that contain a whole word, in any case: files of a folder and its subfolders, or the file `path`
-/// itself.
+/// Returns the files that contain a whole word, in upper or lower case. `path` is a file, or a folder that is searched
+/// with its subfolders.
 fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     if path.is_dir() {
         let entries = fs::read_dir(path).expect("a folder");
@@ -205,13 +210,15 @@ fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     has_word.then(|| path.to_path_buf()).into_iter().collect()
 }
 
-/// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain `center`. The
-/// command `center` is the example because that word has no other meaning, while `deadman` also occurs in sentences.
-/// `center` has no messages of its own, so text.rs is found by `deadman`.
+/// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain the command
+/// `center`. This word occurs only as the command, while `deadman` also occurs in sentences. `center` has no messages
+/// of its own, so `deadman` stands for it in text.rs.
 #[test]
 fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
     let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
-    let (_, list) = page.split_once("**A console command.**").expect("its list");
+    let (_, list) = page
+        .split_once("**A console command.**")
+        .expect("the list of files");
     let (list, _) = list.split_once("**A gait.**").expect("the next list");
     let quoted = list.split('`').skip(1).step_by(2);
     let files = quoted.filter(|text| text.contains('/') && !text.contains(' '));
@@ -241,7 +248,7 @@ fn read_pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
     let docs = fs::read_dir(root().join("docs")).expect("docs/");
     paths.extend(docs.map(|page| page.expect("a page").path()));
-    paths.retain(|path| path.extension().is_some_and(|end| end == "md"));
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
     let read_page = |path: PathBuf| {
         let text = fs::read_to_string(&path).expect("a page");
         (path, text)
@@ -249,7 +256,7 @@ fn read_pages() -> Vec<(PathBuf, String)> {
     paths.into_iter().map(read_page).collect()
 }
 
-/// Returns the targets of the links and pictures of a page: the text between `](` and `)`, or in `src="..."`.
+/// Returns the targets of a page's links and pictures: the texts between `](` and `)`, and those in `src="..."`.
 fn links_of(text: &str) -> Vec<&str> {
     let texts_between = |start: &'static str, end: char| {
         let pieces = text.split(start).skip(1);
@@ -260,7 +267,7 @@ fn links_of(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Returns the anchors of a page's headings, as GitHub and mkdocs make them.
+/// Returns the anchors that GitHub and mkdocs make from a page's headings.
 fn anchors_of(text: &str) -> Vec<String> {
     let anchor_of = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
@@ -276,7 +283,7 @@ fn anchors_of(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_link_of_a_page_leads_somewhere() {
+fn every_link_of_a_page_has_an_existing_target() {
     let mut count = 0;
     for (page, text) in read_pages() {
         for link in links_of(&text) {
@@ -307,7 +314,11 @@ fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
     let book = fs::read_to_string(root().join("mkdocs.yml")).expect("the book's contents");
     let count_of = |name: &str| book.matches(name).count();
     for (page, _) in read_pages() {
-        let name = page.file_name().expect("a name").to_str().expect("plain");
+        let name = page
+            .file_name()
+            .expect("a name")
+            .to_str()
+            .expect("a UTF-8 name");
         if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
             assert_eq!(
                 count_of(&format!("{name},"))
@@ -328,7 +339,7 @@ fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
 
 #[test]
 fn no_picture_is_on_two_pages_of_the_book() {
-    let mut seen_pictures = BTreeSet::new();
+    let mut pictures = BTreeSet::new();
     for (page, text) in read_pages() {
         let folder = page.parent().expect("a folder");
         // README.md is not a page of the book.
@@ -336,29 +347,35 @@ fn no_picture_is_on_two_pages_of_the_book() {
             continue;
         }
         for link in links_of(&text) {
-            if [".svg", ".png"].iter().any(|end| link.ends_with(end)) {
+            if [".svg", ".png"]
+                .iter()
+                .any(|extension| link.ends_with(extension))
+            {
                 let picture = folder.join(link);
                 assert!(
-                    seen_pictures.insert(picture),
-                    "{}: {link} once more",
+                    pictures.insert(picture),
+                    "{}: {link} is on another page, too",
                     page.display()
                 );
             }
         }
     }
-    assert!(seen_pictures.len() > 5, "{seen_pictures:?}");
+    assert!(pictures.len() > 5, "{pictures:?}");
 }
 
 #[test]
-fn the_pages_name_the_version_that_is_built() {
+fn the_pages_name_the_current_version() {
     let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("Cargo.toml");
     let version = manifest
         .lines()
         .find_map(|line| line.strip_prefix("version = "))
         .expect("a version")
         .trim_matches('"');
-    let log = fs::read_to_string(root().join("CHANGELOG.md")).expect("CHANGELOG.md");
-    assert!(log.contains(&format!("\n## {version} (")), "CHANGELOG.md");
+    let changelog = fs::read_to_string(root().join("CHANGELOG.md")).expect("CHANGELOG.md");
+    assert!(
+        changelog.contains(&format!("\n## {version} (")),
+        "CHANGELOG.md"
+    );
     let mut count = 0;
     for (page, text) in read_pages() {
         // `lizard-0.2.0-page.zip`, `git tag v0.2.0`, `# lizard 0.2.0 tables`.

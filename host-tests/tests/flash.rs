@@ -1,5 +1,5 @@
-//! Tests of README's `make flash`: cargo, ravedude and avrdude write the image to a new board. The board
-//! is simulated in real time behind a pseudo terminal, with the boot loader of a stock UNO in flash.
+//! Tests of `make flash` as in README: cargo, ravedude and avrdude write the image to a new board. The board is
+//! simulated in real time at a pseudo terminal, with the boot loader of a stock UNO in flash.
 //!
 //! `make flash-test` runs these tests after it has installed the tools.
 
@@ -16,21 +16,22 @@ use simulated_uno::{Fidelity, Uno};
 /// Frames until all servos are awake.
 const AWAKE_FRAMES: u64 = 60;
 
-fn make_flash(desk: &Desk) -> Shell {
-    Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &desk.name())])
+/// Starts `make flash` with the board's port.
+fn start_make_flash(desk: &Desk) -> Shell {
+    Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &desk.port_path())])
 }
 
 /// Runs the board for a number of frames.
 fn run_frames(desk: &mut Desk, count: u64) {
     let end = desk.uno.cycle() + count * FRAME_CYCLES;
-    let has_passed = desk.run_until(|uno| uno.cycle() > end);
-    assert!(has_passed, "waited {LIMIT} for {count} frames");
+    let is_in_time = desk.run_until(|uno| uno.cycle() > end);
+    assert!(is_in_time, "waited {LIMIT} for {count} frames");
 }
 
 #[test]
 fn make_flash_writes_the_image_and_the_robot_walks() {
-    let mut desk = Desk::with_a_new_board();
-    let mut shell = make_flash(&desk);
+    let mut desk = Desk::with_new_uno();
+    let mut shell = start_make_flash(&desk);
     desk.wait_for_text(&shell, "# lizard");
     let screen = shell.screen();
     assert!(screen.contains("bytes of flash verified"), "{screen}");
@@ -79,10 +80,10 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
 
 #[test]
 fn an_upload_keeps_the_eeprom() {
-    let mut desk = Desk::with_a_new_board();
+    let mut desk = Desk::with_new_uno();
     let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
     desk.uno.set_eeprom(&eeprom);
-    let mut shell = make_flash(&desk);
+    let mut shell = start_make_flash(&desk);
     // The EEPROM is compared before the firmware can write to it.
     desk.wait_for_text(&shell, "bytes of flash verified");
     assert!(
@@ -94,15 +95,15 @@ fn an_upload_keeps_the_eeprom() {
 
 #[test]
 fn a_saved_calibration_is_in_effect_after_the_next_upload() {
-    let mut desk = Desk::with_a_new_board();
-    let mut shell = make_flash(&desk);
+    let mut desk = Desk::with_new_uno();
+    let mut shell = start_make_flash(&desk);
     desk.wait_for_text(&shell, "# lizard");
     for line in ["trim 1 3", "deadman 700", "save"] {
         shell.say(line);
         desk.wait_for_text(&shell, &format!("ok {line}"));
     }
     shell.interrupt();
-    let mut shell = make_flash(&desk);
+    let mut shell = start_make_flash(&desk);
     desk.wait_for_text(&shell, "# lizard");
     shell.say("cal");
     desk.wait_for_text(&shell, "ok cal");
@@ -113,15 +114,15 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
 }
 
 #[test]
-fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
-    let mut desk = Desk::with_a_new_board();
-    let shell = make_flash(&desk);
-    let mut is_worn = false;
-    // Once the image's first page is written, one bit of it changes.
+fn a_byte_that_changes_after_it_was_written_ends_the_upload() {
+    let mut desk = Desk::with_new_uno();
+    let shell = start_make_flash(&desk);
+    let mut has_flipped_bit = false;
+    // After the first page is written, one of its bits changes.
     let has_ended = desk.run_until(|uno| {
-        if !is_worn && uno.flash()[0x100] != 0xff {
+        if !has_flipped_bit && uno.flash()[0x100] != 0xff {
             uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
-            is_worn = true;
+            has_flipped_bit = true;
         }
         shell.has_ended()
     });
@@ -130,7 +131,7 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
         has_ended,
         "waited {LIMIT} for the end of the upload:\n{screen}"
     );
-    assert!(is_worn, "nothing was written:\n{screen}");
+    assert!(has_flipped_bit, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: it did not work"), "{screen}");
     assert!(!screen.contains("# lizard"), "no console:\n{screen}");
@@ -138,10 +139,10 @@ fn a_byte_that_the_flash_does_not_keep_ends_the_upload() {
 
 #[test]
 fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
-    let mut desk = Desk::with_a_new_board();
+    let mut desk = Desk::with_new_uno();
     // A boot loader that does nothing: `rjmp .-2`.
     desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
-    let shell = make_flash(&desk);
+    let shell = start_make_flash(&desk);
     let screen = desk.run_until_exit(&shell);
     assert!(screen.contains("the board does not answer"), "{screen}");
     assert!(

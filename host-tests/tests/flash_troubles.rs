@@ -1,4 +1,4 @@
-//! The error messages of `make flash`. No board is needed, and a connected one is left alone.
+//! Tests of the error messages of `make flash`. They need no board, and leave a connected board alone.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -10,13 +10,13 @@ use lizard_time_limit::LIMIT;
 use simulated_uno::Port;
 use tempfile::TempDir;
 
-/// Runs `scripts/flash --check` on the serial ports of a folder. Returns its error output, and
-/// true if it succeeds. `user` is a command that runs it as another user; if it is empty, the current user runs
-/// it. `port` is the value of RAVEDUDE_PORT.
-fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) {
+/// Runs `scripts/flash --check` on the serial ports of a folder. Returns the script's error output, and true if the
+/// script succeeds. `user_command` runs the script as another user; if it is empty, the current user runs the script.
+/// `port` is the value of RAVEDUDE_PORT.
+fn check_ports_as(user_command: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) {
     let scripts = copy_scripts();
     let script = scripts.path().join("scripts/flash");
-    let command_line: Vec<&str> = [user, &["bash"]].concat();
+    let command_line: Vec<&str> = [user_command, &["bash"]].concat();
     let mut command = Command::new(command_line[0]);
     command.args(&command_line[1..]).arg(script).arg("--check");
     command.env("FLASH_DEV", ports).env_remove("RAVEDUDE_PORT");
@@ -28,8 +28,8 @@ fn check_as(user: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) 
     (output_text, output.status.success())
 }
 
-fn check(ports: &Path) -> (String, bool) {
-    check_as(&[], ports, None)
+fn check_ports(ports: &Path) -> (String, bool) {
+    check_ports_as(&[], ports, None)
 }
 
 /// True if the tests may run programs as another user.
@@ -41,11 +41,11 @@ fn is_root() -> bool {
 fn create_folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let permissions = Permissions::from_mode(0o755);
-    fs::set_permissions(folder.path(), permissions).expect("it is ours");
+    fs::set_permissions(folder.path(), permissions).expect("the test owns the folder");
     folder
 }
 
-/// Copies the scripts into a folder that other users can read, too.
+/// Copies the scripts into a folder that other users can also read.
 fn copy_scripts() -> TempDir {
     let copy = create_folder();
     let mut command = Command::new("cp");
@@ -60,7 +60,7 @@ fn copy_scripts() -> TempDir {
 
 #[test]
 fn without_a_board_the_message_says_what_to_connect() {
-    let (output_text, has_succeeded) = check(create_folder().path());
+    let (output_text, has_succeeded) = check_ports(create_folder().path());
     assert!(!has_succeeded);
     assert!(output_text.contains("no board found"), "{output_text}");
     assert!(
@@ -73,7 +73,7 @@ fn without_a_board_the_message_says_what_to_connect() {
 fn the_only_board_is_used_whichever_usb_chip_it_has() {
     let ports = create_folder();
     File::create(ports.path().join("ttyUSB0")).expect("a file");
-    assert_eq!(check(ports.path()), (String::new(), true));
+    assert_eq!(check_ports(ports.path()), (String::new(), true));
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn of_several_boards_one_must_be_named() {
     for name in ["ttyACM0", "ttyUSB3"] {
         File::create(ports.path().join(name)).expect("a file");
     }
-    let (output_text, has_succeeded) = check(ports.path());
+    let (output_text, has_succeeded) = check_ports(ports.path());
     assert!(!has_succeeded);
     assert!(
         output_text.contains("several boards found"),
@@ -93,13 +93,14 @@ fn of_several_boards_one_must_be_named() {
         "{output_text}"
     );
     let named_port = ports.path().join("ttyUSB3");
-    assert!(check_as(&[], ports.path(), Some(&named_port)).1);
+    assert!(check_ports_as(&[], ports.path(), Some(&named_port)).1);
 }
 
 #[test]
 fn a_port_that_is_not_there_is_named() {
     let missing_port = Path::new("/dev/no-such-port");
-    let (output_text, has_succeeded) = check_as(&[], create_folder().path(), Some(missing_port));
+    let (output_text, has_succeeded) =
+        check_ports_as(&[], create_folder().path(), Some(missing_port));
     assert!(!has_succeeded);
     assert!(
         output_text.contains("there is no /dev/no-such-port"),
@@ -116,10 +117,10 @@ fn a_port_that_another_program_has_open_names_the_program() {
     let port = Port::new().expect("a pseudo terminal");
     let ports = create_folder();
     symlink(port.path(), ports.path().join("ttyACM0")).expect("a link");
-    assert_eq!(check(ports.path()), (String::new(), true));
+    assert_eq!(check_ports(ports.path()), (String::new(), true));
     let mut options = OpenOptions::new();
     let open_port = options.read(true).write(true).open(port.path());
-    let (output_text, has_succeeded) = check(ports.path());
+    let (output_text, has_succeeded) = check_ports(ports.path());
     assert!(!has_succeeded);
     let own_process = format!("(process {})", std::process::id());
     assert!(
@@ -127,7 +128,7 @@ fn a_port_that_another_program_has_open_names_the_program() {
         "{output_text}"
     );
     drop(open_port);
-    assert!(check(ports.path()).1);
+    assert!(check_ports(ports.path()).1);
 }
 
 #[test]
@@ -135,13 +136,12 @@ fn without_permission_the_message_says_which_group_to_join() {
     let ports = create_folder();
     let port = ports.path().join("ttyACM0");
     File::create(&port).expect("a file");
-    fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("it is ours");
+    fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("the test owns the file");
     let nobody_command = ["setpriv", "--reuid=nobody", "--clear-groups"];
     if !is_root() {
-        // Only root can run the script as another user. A port that even its owner may not
-        // open has the same effect.
-        fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("it is ours");
-        let (output_text, has_succeeded) = check_as(&[], ports.path(), None);
+        // Only root can run the script as another user. A port that even its owner may not open has the same effect.
+        fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
+        let (output_text, has_succeeded) = check_ports_as(&[], ports.path(), None);
         assert!(!has_succeeded);
         assert!(output_text.contains("may not open"), "{output_text}");
         return;
@@ -150,7 +150,7 @@ fn without_permission_the_message_says_which_group_to_join() {
     chgrp.arg("dialout").arg(&port);
     let chgrp = LIMIT.output(&mut chgrp, b"").expect("chgrp ends");
     assert!(chgrp.status.success(), "the group dialout is Debian's");
-    let (output_text, has_succeeded) = check_as(&nobody_command, ports.path(), None);
+    let (output_text, has_succeeded) = check_ports_as(&nobody_command, ports.path(), None);
     assert!(!has_succeeded);
     assert!(output_text.contains("nobody may not open"), "{output_text}");
     assert!(
@@ -161,17 +161,18 @@ fn without_permission_the_message_says_which_group_to_join() {
 
 #[test]
 fn a_missing_avrdude_says_what_to_install() {
-    // A user who is not root, on a machine where no package is installed: dpkg-query finds none, and avrdude and
-    // sudo are not on the PATH.
+    // Simulates a user who is not root on a machine without packages: dpkg-query finds none, and avrdude and sudo are
+    // not on the PATH.
     let bin = create_folder();
     for tool in ["bash", "env", "id", "dirname", "grep", "apt-get"] {
         let tool_path = Path::new("/usr/bin").join(tool);
         symlink(tool_path, bin.path().join(tool)).expect("a link");
     }
     let dpkg_query = bin.path().join("dpkg-query");
-    // A new file: writing through a link would change the machine's own program.
-    fs::write(&dpkg_query, "#!/usr/bin/bash\nexit 1\n").expect("it is ours");
-    fs::set_permissions(&dpkg_query, Permissions::from_mode(0o755)).expect("it is ours");
+    // This is a new file, not a link: writing through a link would change the machine's own program.
+    fs::write(&dpkg_query, "#!/usr/bin/bash\nexit 1\n").expect("the test owns the file");
+    fs::set_permissions(&dpkg_query, Permissions::from_mode(0o755))
+        .expect("the test owns the file");
     let scripts = copy_scripts();
     let script = scripts.path().join("scripts/setup-flash");
     let mut command = if is_root() {

@@ -1,16 +1,17 @@
-//! Tests that run the same image on two simulators, which must agree about every pulse and every byte.
-//! docs/judges.md describes both simulators and the meaning of their agreement.
+//! Tests that run the same image on two simulators, which must agree about every pulse and every byte. docs/judges.md
+//! describes both simulators, and what their agreement proves.
 
 use std::thread;
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::judge::{
-    AVR8JS_LAG, Outputs, PinPulse, compare_console, compare_pulses, run_on_avr8js, run_own_tests,
+    AVR8JS_LAG_CYCLES, Outputs, PinPulse, compare_console, compare_pulses, run_on_avr8js,
+    run_own_tests,
 };
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
 
-/// Returns a standing robot on the simulated UNO, with everything recorded since power-on.
+/// Returns a standing robot on the simulated UNO, which has recorded everything since power-on.
 fn wake_robot() -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.run_ms(1000);
@@ -23,59 +24,59 @@ fn gait_commands() -> Vec<String> {
     names.map(|name| name.replace('-', " ")).collect()
 }
 
-/// The tolerance in time between two consoles with the same output.
+/// The allowed difference in time between the outputs of two consoles.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum TimeTolerance {
-    /// Two cycles: two interrupts may delay main before a byte, and each may come one
-    /// cycle later in one simulator than in the other.
+    /// Two cycles. Two interrupts may delay main before a byte, and each may come one cycle later in one simulator than
+    /// in the other.
     Cycles,
-    /// Less than an iteration of main's loop, which notices only once per iteration that the EEPROM
-    /// is ready or that a byte of a flood has arrived.
+    /// One iteration of main's loop, which checks only once per iteration whether the EEPROM is ready and whether a
+    /// byte of a flood has arrived.
     LoopIteration,
-    /// Any difference: the consoles are not compared. Single cycles, in which two simulators may differ,
-    /// decide which bytes of a flood are lost while long answers are sent.
+    /// No limit: the consoles are not compared. While long answers are sent, some bytes of a flood are lost, and a
+    /// difference of one cycle decides which bytes.
     Any,
 }
 
-/// Upper bound of the cycles of an iteration of main's loop, which computes a frame, at most 12 000 cycles,
-/// and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator and
-/// just after the start of this iteration in the other, the other notices it one iteration later.
+/// Upper bound of the cycles of one iteration of main's loop. An iteration computes a frame, in at most 12 000 cycles,
+/// and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator and just after
+/// the start of this iteration in the other, main notices it one iteration later in the other.
 const MAX_LOOP_CYCLES: u64 = 20_000;
 
-/// Runs avr8js on the bytes that the bench has received, and compares pulses, console and EEPROM.
+/// Runs avr8js on the bytes that the bench has received, and checks that pulses, console and EEPROM agree.
 fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTolerance) {
-    let end = bench.uno.cycle();
+    let end_cycle = bench.uno.cycle();
     let edges = bench.uno.edges();
-    let simavr = Outputs::new(&edges, bench.bytes(), end);
+    let simavr = Outputs::new(&edges, bench.bytes(), end_cycle);
     let received = bench.uno.received_by_uno();
-    let verdict = unwrap_or_panic(run_on_avr8js(
+    let avr8js = unwrap_or_panic(run_on_avr8js(
         &FirmwareBench::image(),
         &received,
-        end,
+        end_cycle,
         robot(),
     ));
-    let pulses = compare_pulses(&simavr, &verdict.outputs, &servo_pins(robot()));
+    let pulses = compare_pulses(&simavr, &avr8js.outputs, &servo_pins(robot()));
     let pulses = pulses.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
     assert_eq!(
-        pulses.offset_cycles, AVR8JS_LAG,
+        pulses.offset_cycles, AVR8JS_LAG_CYCLES,
         "{case_name}: the pulses' cycle in the slot"
     );
-    let limit = match tolerance {
+    let max_cycles = match tolerance {
         TimeTolerance::Cycles => Some(2),
         TimeTolerance::LoopIteration => Some(MAX_LOOP_CYCLES),
         TimeTolerance::Any => None,
     };
-    if let Some(limit) = limit {
-        let console = compare_console(&simavr, &verdict.outputs);
+    if let Some(max_cycles) = max_cycles {
+        let console = compare_console(&simavr, &avr8js.outputs);
         let console = console.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
         assert!(
-            console.offset_cycles.abs() <= 1 && console.jitter_cycles <= limit,
+            console.offset_cycles.abs() <= 1 && console.jitter_cycles <= max_cycles,
             "{case_name}: the console's times differ: {console:?}"
         );
         println!("{case_name}: {console}");
     }
     let eeprom = bench.uno.eeprom();
-    let differing_address = eeprom.iter().zip(&verdict.eeprom).position(|(a, b)| a != b);
+    let differing_address = eeprom.iter().zip(&avr8js.eeprom).position(|(a, b)| a != b);
     assert_eq!(
         differing_address, None,
         "{case_name}: the EEPROMs differ at this address"
@@ -83,8 +84,8 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
     println!(
         "{case_name}: {} bytes received, {pulses}; {:.1} s in {} ms of processor time",
         received.len(),
-        end as f64 / (1000 * CYCLES_PER_MS) as f64,
-        verdict.cpu_ms
+        end_cycle as f64 / (1000 * CYCLES_PER_MS) as f64,
+        avr8js.cpu_ms
     );
 }
 
@@ -136,8 +137,8 @@ fn two_simulators_agree_under_a_saturated_line() {
         .find(|line| *line != "stand")
         .cloned();
     let moving_gait = moving_gait.unwrap_or_else(|| "stand".into());
-    // No flood contains a command that moves the robot: bytes of a flood are lost, and each simulator might
-    // obey other commands.
+    // No flood contains a command that moves the robot: bytes of a flood are lost, so the two simulators might obey
+    // different commands.
     let floods = [
         ("status\n", TimeTolerance::Any),
         ("help\n", TimeTolerance::Any),
@@ -168,11 +169,10 @@ fn the_known_faults_of_avr8js_still_exist_and_are_corrected() {
     unwrap_or_panic(run_own_tests());
 }
 
-fn pulse(rise: u64, width: u64) -> PinPulse {
-    let pin = Pin::d(9);
+fn pulse(rise_cycle: u64, width: u64) -> PinPulse {
     PinPulse {
-        pin,
-        rise_cycle: rise,
+        pin: Pin::d(9),
+        rise_cycle,
         width,
     }
 }
@@ -187,23 +187,17 @@ fn outputs_of(pulses: &[PinPulse], text: &str) -> Outputs {
 }
 
 #[test]
-fn the_first_difference_between_two_accounts_is_named() {
+fn the_first_difference_between_the_outputs_of_two_simulators_is_named() {
     let pulses = [pulse(1_000, 24_000), pulse(321_000, 24_000)];
-    let our_outputs = outputs_of(&pulses, "ok walk");
-    let later_pulses = pulses.map(
-        |PinPulse {
-             rise_cycle: rise,
-             width,
-             ..
-         }| pulse(rise + 1, width),
-    );
-    let compare_with_ours = |pulses: &[PinPulse]| {
-        let their_outputs = outputs_of(pulses, "ok walk");
-        compare_pulses(&our_outputs, &their_outputs, &[Pin::d(9)])
-            .map(|agreed| (agreed.count, agreed.offset_cycles))
+    let simavr_outputs = outputs_of(&pulses, "ok walk");
+    let later_pulses = pulses.map(|original| pulse(original.rise_cycle + 1, original.width));
+    let compare_with_simavr = |pulses: &[PinPulse]| {
+        let avr8js_outputs = outputs_of(pulses, "ok walk");
+        compare_pulses(&simavr_outputs, &avr8js_outputs, &[Pin::d(9)])
+            .map(|agreement| (agreement.count, agreement.offset_cycles))
     };
-    assert_eq!(compare_with_ours(&later_pulses), Ok((2, 1)));
-    for (their_pulses, expected_text) in [
+    assert_eq!(compare_with_simavr(&later_pulses), Ok((2, 1)));
+    for (avr8js_pulses, expected_text) in [
         (
             &[pulse(1_000, 24_000), pulse(321_000, 24_001)][..],
             "pulse 1: on simavr D9 rises at cycle 321000 for 24000 cycles, on avr8js D9 rises at cycle 321000 for 24001 cycles",
@@ -219,7 +213,7 @@ fn the_first_difference_between_two_accounts_is_named() {
         ),
         (&[], "no servo gets a pulse"),
     ] {
-        let message = compare_with_ours(their_pulses).expect_err(expected_text);
+        let message = compare_with_simavr(avr8js_pulses).expect_err(expected_text);
         assert!(message.contains(expected_text), "{message}");
     }
     for (text, expected_text) in [
@@ -234,7 +228,7 @@ fn the_first_difference_between_two_accounts_is_named() {
         ),
     ] {
         let message =
-            compare_console(&our_outputs, &outputs_of(&pulses, text)).expect_err(expected_text);
+            compare_console(&simavr_outputs, &outputs_of(&pulses, text)).expect_err(expected_text);
         assert!(message.contains(expected_text), "{message}");
     }
 }

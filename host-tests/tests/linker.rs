@@ -1,38 +1,39 @@
-//! Tests that a program computes the same after our linker has reordered its functions.
+//! Tests that a program computes the same results after our linker has reordered its functions.
 
 use lizard_host_tests::avr_gcc::{compile_to_object, link};
 use lizard_linker::{ROUTINES, Savings, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Links a program unchanged, and after our linker has shrunk it. Returns both images with their savings.
+/// Links a program twice: unchanged, and after our linker has shrunk it. Returns both images with their savings.
 fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
-    let object = compile_to_object(program).expect("it compiles");
+    let object = compile_to_object(program).expect("the program compiles");
     let (shrunk, savings) = shrink(&object)
-        .expect("it is an object")
-        .expect("of an AVR");
+        .expect("the object is valid")
+        .expect("the object is for an AVR");
     [(object, Savings::default()), (shrunk, savings)]
-        .map(|(object, savings)| (link(ROUTINES, &object).expect("it links"), savings))
+        .map(|(object, savings)| (link(ROUTINES, &object).expect("the object links"), savings))
 }
 
-fn address(image: &Image, name: &str) -> u16 {
+/// Returns the address of a variable in RAM.
+fn address_of(image: &Image, name: &str) -> u16 {
     let symbol = image.symbol(name);
-    (symbol.expect("the program has it").address - 0x80_0000) as u16
+    (symbol.expect("the variable exists").address - 0x80_0000) as u16
 }
 
 /// Returns a UNO that has run the program to its end.
-fn run(image: &Image) -> Uno {
+fn run_to_end(image: &Image) -> Uno {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(100);
     assert_eq!(
-        uno.peek(address(image, "done")),
+        uno.peek(address_of(image, "done")),
         1,
-        "it came to its end, interrupted where it is to be"
+        "the program ends, and a timer has interrupted it"
     );
     uno
 }
 
-/// Returns a C program of twenty functions of 600 bytes, interrupted by a timer. Each of the first ten calls
-/// the function ten places further on. `extra_code` is added in front of `main`.
+/// Returns a C program with twenty functions of 600 bytes, interrupted by a timer. Function `i` of the first ten calls
+/// function `i + 10`. `extra_code` is added in front of `main`.
 fn program_with_far_calls(extra_code: &str) -> String {
     let functions: String = (0..20)
         .rev()
@@ -70,7 +71,7 @@ fn program_with_far_calls(extra_code: &str) -> String {
     )
 }
 
-/// Returns the result that the program of [`program_with_far_calls`] must compute.
+/// Returns the correct result of the program of [`program_with_far_calls`].
 fn expected_sum() -> u16 {
     fn f(index: u16, a: u16) -> u16 {
         let a = a.wrapping_mul(33).wrapping_add(index);
@@ -84,28 +85,26 @@ fn expected_sum() -> u16 {
 }
 
 fn run_for_result(image: &Image) -> u16 {
-    let uno = run(image);
-    let result_address = address(image, "result");
+    let uno = run_to_end(image);
+    let result_address = address_of(image, "result");
     u16::from_le_bytes([uno.peek(result_address), uno.peek(result_address + 1)])
 }
 
 #[test]
-fn functions_in_another_order_compute_the_same_in_fewer_bytes() {
+fn functions_in_another_order_compute_the_same_result_in_fewer_bytes() {
     let [(plain_image, _), (shrunk_image, savings)] = link_both_ways(&program_with_far_calls(""));
     assert_eq!(run_for_result(&plain_image), expected_sum());
     assert_eq!(run_for_result(&shrunk_image), expected_sum());
-    // Main cannot be near all ten functions that it calls, but each of these functions can be near its
-    // callee.
+    // Main cannot be near all ten functions that it calls, but each of the ten can be near the function that it calls.
     assert!(savings.calls >= 20, "{savings:?}");
-    let end_address = |image: &Image| image.symbol("_etext").expect("it has one").address;
+    let end_address = |image: &Image| image.symbol("_etext").expect("the symbol exists").address;
     let saved_bytes = end_address(&plain_image) as i64 - end_address(&shrunk_image) as i64;
     assert!(saved_bytes >= savings.calls, "{saved_bytes} {savings:?}");
 }
 
 #[test]
 fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
-    // The function `upper` has no return, a return that may be skipped, or a branch of short reach to
-    // `lower`.
+    // The function `upper` has no return, has a return that may be skipped, or has a relative jump to `lower`.
     for ending in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {
         let extra_code = format!(
             r#"asm(
@@ -120,7 +119,7 @@ fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
         let mut results = Vec::new();
         for (image, savings) in link_both_ways(&program) {
             assert_eq!(savings.calls, 0, "{ending}: {savings:?}");
-            let symbol_of = |name| image.symbol(name).expect("it has one");
+            let symbol_of = |name| image.symbol(name).expect("the symbol exists");
             let upper = symbol_of("upper");
             assert_eq!(
                 symbol_of("lower").address,

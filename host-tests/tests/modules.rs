@@ -1,5 +1,4 @@
-//! Tests of the dependencies between modules: none is circular, and each top-level module of the core uses only
-//! those below it.
+//! Tests of the dependencies between modules: none is cyclic, and each layer of the core uses only the layers below it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use lizard_host_tests::root;
 
-/// The crates whose modules are read.
+/// The crates whose modules are checked.
 const CRATES: [&str; 23] = [
     "crates/calibrate",
     "crates/contact",
@@ -34,11 +33,13 @@ const CRATES: [&str; 23] = [
     "web/wasm-parts",
 ];
 
-/// The rooms of the core, which are its top-level modules, the top room first. A room may use the rooms below it.
-const ROOMS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
+/// The layers of the core, which are its top-level modules, from top to bottom. A layer may use the layers below it.
+/// docs/structure.md calls them rooms.
+const CORE_LAYERS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
-/// Folders whose `mod.rs` counts as a module of its own, so that it may not be part of a circle either.
-const WITH_OWN_FILE: [(&str, &str); 2] = [
+/// Folders whose `mod.rs` counts as another module, so that it may not be part of a cycle either. Each is a crate and a
+/// path prefix.
+const FOLDERS_WITH_ROOT_FILE: [(&str, &str); 2] = [
     ("crates/host", "crate::"),
     ("crates/host", "crate::commands::"),
 ];
@@ -47,16 +48,16 @@ const WITH_OWN_FILE: [(&str, &str); 2] = [
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
-fn no_modules_use_each_other_in_a_circle() {
+fn no_modules_use_each_other_in_a_cycle() {
     let mut use_count = 0;
     for name in CRATES {
         for folder in folders(&root().join(name).join("src")) {
-            let uses = folder.uses(WITH_OWN_FILE.contains(&(name, &folder.path)));
+            let uses = folder.uses(FOLDERS_WITH_ROOT_FILE.contains(&(name, &folder.path)));
             use_count += uses.values().map(BTreeSet::len).sum::<usize>();
-            let circles = find_circles(uses);
+            let cyclic_modules = find_cycles(uses);
             assert!(
-                circles.is_empty(),
-                "{name}, {}: these modules use each other in a circle: {circles:?}",
+                cyclic_modules.is_empty(),
+                "{name}, {}: these modules use each other in a cycle: {cyclic_modules:?}",
                 folder.path
             );
         }
@@ -68,14 +69,14 @@ fn no_modules_use_each_other_in_a_circle() {
 }
 
 #[test]
-fn a_room_of_the_core_uses_only_rooms_below_it() {
+fn a_layer_of_the_core_uses_only_layers_below_it() {
     let core = folders(&root().join("crates/core/src")).remove(0);
-    for (room, used_rooms) in core.uses(false) {
-        if let Some(index) = ROOMS.iter().position(|name| *name == room) {
-            for other_room in used_rooms {
+    for (layer, used_layers) in core.uses(false) {
+        if let Some(index) = CORE_LAYERS.iter().position(|name| *name == layer) {
+            for other_layer in used_layers {
                 assert!(
-                    ROOMS[index..].contains(&other_room.as_str()),
-                    "{room} uses {other_room}, which is not below it"
+                    CORE_LAYERS[index..].contains(&other_layer.as_str()),
+                    "{layer} uses {other_layer}, which is not below it"
                 );
             }
         }
@@ -90,19 +91,19 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
         lines.iter().map(uses_of_line).collect()
     };
     let chain = uses_of(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
-    assert!(find_circles(chain).is_empty());
-    let circle = uses_of(&[
+    assert!(find_cycles(chain).is_empty());
+    let cycle = uses_of(&[
         ("above", &["a"]),
         ("a", &["b"]),
         ("b", &["c"]),
         ("c", &["a", "below"]),
         ("below", &[]),
     ]);
-    assert_eq!(find_circles(circle), ["a", "b", "c"]);
+    assert_eq!(find_cycles(cycle), ["a", "b", "c"]);
 }
 
 #[test]
-fn a_use_of_a_module_above_is_read_as_its_path_and_a_roots_own_items_are_found() {
+fn super_is_read_as_the_path_of_the_module_above_and_the_items_of_a_root_file_are_found() {
     let text = "use super::{Link, status};\nuse super::super::recorder::Event;";
     assert_eq!(
         resolve_super(text, "crate::drive::console::"),
@@ -112,9 +113,9 @@ fn a_use_of_a_module_above_is_read_as_its_path_and_a_roots_own_items_are_found()
     assert_eq!(item_names(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
-/// Returns the modules that use each other in circles: those that remain after repeatedly removing every
-/// module that uses no other or that no other uses.
-fn find_circles(mut uses: Uses) -> Vec<String> {
+/// Returns the modules that are part of a cycle or lie between two cycles: those that remain after every module that
+/// uses no other, or that no other uses, is removed repeatedly.
+fn find_cycles(mut uses: Uses) -> Vec<String> {
     loop {
         let previous_count = uses.len();
         let used: BTreeSet<String> = uses.values().flatten().cloned().collect();
@@ -131,7 +132,7 @@ fn find_circles(mut uses: Uses) -> Vec<String> {
 
 /// A folder of modules: a crate, or a module with submodules.
 struct Folder {
-    /// The path prefix of the modules' names: `crate::`, or for example `crate::measures::`.
+    /// The path prefix of the modules' names, for example `crate::` or `crate::measures::`.
     path: String,
     /// The text of the file that declares the modules, without comments and tests.
     root_text: String,
@@ -143,15 +144,15 @@ struct Folder {
 fn folders(source: &Path) -> Vec<Folder> {
     let mut all_folders = vec![Folder {
         path: "crate::".to_owned(),
-        root_text: read(&source.join("lib.rs")),
+        root_text: read_code(&source.join("lib.rs")),
         directory: source.to_owned(),
     }];
     let mut next_index = 0;
     while let Some(folder) = all_folders.get(next_index) {
         let inner_folders = folder.modules().into_iter().filter_map(|module| {
             let module_folder = folder.directory.join(module);
-            let root =
-                read(&module_folder.join("mod.rs")) + &read(&module_folder.with_extension("rs"));
+            let root = read_code(&module_folder.join("mod.rs"))
+                + &read_code(&module_folder.with_extension("rs"));
             let path = format!("{}{module}::", folder.path);
             module_folder.is_dir().then_some(Folder {
                 path,
@@ -171,8 +172,8 @@ impl Folder {
         self.root_text.lines().filter_map(declared_module).collect()
     }
 
-    /// Returns the uses among the folder's modules, including its `mod.rs` if `with_root`. A module
-    /// and its submodules count as one; tests do not count.
+    /// Returns the uses among the folder's modules. A module and its submodules count as one module, and `mod.rs` as
+    /// another if `with_root` is true. Tests do not count.
     fn uses(&self, with_root: bool) -> Uses {
         let modules = self.modules();
         // `crate::Name` uses the module from which the folder's root file exports the name.
@@ -191,19 +192,23 @@ impl Folder {
         }
         let mut uses = Uses::new();
         if with_root {
-            modules_by_name.extend(item_names(&self.root_text).map(|name| (name, ROOT)));
+            modules_by_name.extend(item_names(&self.root_text).map(|name| (name, ROOT_FILE)));
             let used = modules
                 .iter()
                 .filter(|module| self.root_text.contains(&format!("{module}::")));
-            uses.insert(ROOT.to_owned(), used.map(ToString::to_string).collect());
+            uses.insert(
+                ROOT_FILE.to_owned(),
+                used.map(ToString::to_string).collect(),
+            );
         }
         for module in &modules {
             let module_folder = self.directory.join(module);
-            let mut text = resolve_super(&read(&module_folder.with_extension("rs")), &self.path);
+            let mut text =
+                resolve_super(&read_code(&module_folder.with_extension("rs")), &self.path);
             for path in source_files(&module_folder) {
                 let relative_path = path
                     .strip_prefix(&self.directory)
-                    .expect("it is in the folder");
+                    .expect("a path in the folder");
                 let parents = relative_path.parent().expect("a folder").iter();
                 let parents = parents.map(|name| name.to_string_lossy());
                 let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();
@@ -213,7 +218,7 @@ impl Folder {
                     .iter()
                     .map(|name| format!("{name}::"))
                     .collect();
-                text += &resolve_super(&read(&path), &format!("{}{parent_path}", self.path));
+                text += &resolve_super(&read_code(&path), &format!("{}{parent_path}", self.path));
             }
             let used = names_after(&text, &self.path).into_iter();
             let others = used
@@ -228,8 +233,8 @@ impl Folder {
     }
 }
 
-/// The name of a folder's root file among its modules.
-const ROOT: &str = "(mod.rs)";
+/// The name of a folder's root file in the uses of its modules.
+const ROOT_FILE: &str = "(mod.rs)";
 
 /// Returns the names of the functions, types and constants that a text defines.
 fn item_names(text: &str) -> impl Iterator<Item = &str> {
@@ -244,8 +249,8 @@ fn item_names(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Replaces every `super::` in the text of a file by the path of the module that it denotes. `parent_path` is the path
-/// of the module above the file.
+/// Replaces every `super::` in the text of a file by the path of the module that it means. `parent_path` is the path of
+/// the module above the file.
 fn resolve_super(text: &str, parent_path: &str) -> String {
     let mut text = text.to_owned();
     let parts: Vec<&str> = parent_path.split_inclusive("::").collect();
@@ -258,7 +263,7 @@ fn resolve_super(text: &str, parent_path: &str) -> String {
     text
 }
 
-/// Returns the name of the module that a line of a folder's root file declares; `None` for another line.
+/// Returns the name of the module that a line of a root file declares; `None` if the line declares no module.
 fn declared_module(line: &str) -> Option<&str> {
     let line = line
         .trim_start_matches("pub(crate) ")
@@ -282,9 +287,8 @@ fn words_in(text: &str) -> impl Iterator<Item = &str> {
     text.split(is_separator).filter(|word| !word.is_empty())
 }
 
-/// Reads a file without its comments and without the code that is compiled only for tests. Returns an empty
-/// string if the file is missing.
-fn read(path: &Path) -> String {
+/// Reads a file without its comments and its tests. Returns an empty string if the file is missing.
+fn read_code(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap_or_default();
     let text = match text.split_once("#[cfg(test)]\nmod tests {") {
         Some((code, _)) => code.to_string(),
@@ -294,9 +298,9 @@ fn read(path: &Path) -> String {
         .lines()
         .filter(|line| !line.trim_start().starts_with("//"))
         .collect();
-    let is_for_tests = |i: usize| i > 0 && lines[i - 1].trim() == "#[cfg(test)]";
-    let indices = (0..lines.len()).filter(|i| !is_for_tests(*i));
-    indices.map(|i| format!("{}\n", lines[i])).collect()
+    let is_for_tests = |index: usize| index > 0 && lines[index - 1].trim() == "#[cfg(test)]";
+    let indices = (0..lines.len()).filter(|index| !is_for_tests(*index));
+    indices.map(|index| format!("{}\n", lines[index])).collect()
 }
 
 /// Returns the files of a module's folder and of the folders in it, except for its tests.

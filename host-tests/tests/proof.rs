@@ -1,5 +1,5 @@
-//! Tests that compare the guard of every robot of this repository with floating point and with the robot's
-//! maps of cells, at one in 256 of all pairs of servo positions. `make prove` checks all pairs.
+//! Tests that compare the guard of every robot of this repository with floating point and with the robot's maps of
+//! cells. They check one in 256 of all pairs of servo positions; `make prove` checks all pairs.
 
 use std::path::PathBuf;
 
@@ -7,33 +7,35 @@ use lizard_host_tests::seed;
 use lizard_proof::{PairSample, Proof};
 use lizard_robot::Robot;
 
-const ONE_IN: u32 = 256;
+/// One in this many pairs of servo positions is checked.
+const SAMPLE_ONE_IN: u32 = 256;
 
-/// Returns the file of the robot that the firmware was built for, by default robot.toml, and every file of robots/.
+/// Returns the file of the firmware's robot, by default robot.toml, and every file of robots/.
 fn robot_files() -> Vec<PathBuf> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    let own_file = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    let own_file = own_file.map_or_else(|| format!("{root}/robot.toml").into(), PathBuf::from);
-    let robots = std::fs::read_dir(format!("{root}/robots")).expect("there is a folder robots");
+    let firmware_robot = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
+    let firmware_robot =
+        firmware_robot.map_or_else(|| format!("{root}/robot.toml").into(), PathBuf::from);
+    let robots = std::fs::read_dir(format!("{root}/robots")).expect("the folder robots");
     let mut paths: Vec<PathBuf> = robots
-        .map(|entry| entry.expect("it can be read").path())
+        .map(|entry| entry.expect("a file").path())
         .filter(|path| {
             path.extension()
                 .is_some_and(|extension| extension == "toml")
         })
         .collect();
     paths.sort();
-    paths.insert(0, own_file);
+    paths.insert(0, firmware_robot);
     paths
 }
 
 #[test]
-fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
+fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_judged_wrongly() {
     for (number, file) in (0..).zip(robot_files()) {
         // Each robot and each seed gets a different sample of the pairs.
         let sample = PairSample {
-            one_in: ONE_IN,
-            offset: (seed().wrapping_add(number) % u64::from(ONE_IN)) as u32,
+            one_in: SAMPLE_ONE_IN,
+            offset: (seed().wrapping_add(number) % u64::from(SAMPLE_ONE_IN)) as u32,
         };
         let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
         let proof = Proof::of(&robot, robot.firmware(), sample, &|_| {});
@@ -42,7 +44,7 @@ fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
             .iter()
             .map(|finding| finding.tally.pairs)
             .sum();
-        assert!(pairs > 250_000, "{pairs} pairs are no walk");
+        assert!(pairs > 250_000, "only {pairs} pairs were checked");
         let certified = proof.certified();
         assert!(
             certified > pairs / 50,
@@ -65,15 +67,15 @@ fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_decided_wrong() {
 fn a_guard_with_another_robots_lengths_does_not_pass() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml"));
-    let text = text.expect("the paper's robot is there");
-    // Leaves out the gaits from `look` on, since `look` is unsafe with the longer couplers.
+    let text = text.expect("robots/paper.toml");
+    // Removes `look`, which is unsafe with the longer couplers, and all gaits after it.
     let text = text.split("[gait.look]").next().unwrap_or_default();
-    let robot = Robot::parse(text).expect("it is right");
+    let robot = Robot::parse(text).expect("the paper's robot is valid");
     let longer_text = text
         .replace("\nl2 = 50.0 ", "\nl2 = 51.0 ")
         .replace("\nl10 = 135.0 ", "\nl10 = 136.0 ")
         .replace("\nl15 = 135.0 ", "\nl15 = 136.0 ");
-    let longer_robot = Robot::parse(&longer_text).expect("it is right, too");
+    let longer_robot = Robot::parse(&longer_text).expect("the longer robot is valid");
     let sample = PairSample {
         one_in: 4096,
         offset: 1,

@@ -1,22 +1,23 @@
-//! Tests of the crate `servo-pulses` without the lizard: on the simulated UNO, its example moves eight servos
-//! during a flood of serial bytes.
+//! Tests of the crate `servo-pulses` without the lizard's firmware: on the simulated UNO, the crate's example moves
+//! eight servos during a flood of serial bytes.
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 
-/// The example's pins, in its order.
+/// The pins of the example's servos, in its order.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
-/// Returns the width of a servo's pulse in a frame, cycles, as the example describes it: the width changes by the
-/// servo's own step in every frame, from 1000 us up to 2000 us and back.
-fn width(servo: u64, frame: u64) -> u64 {
+/// Returns the width of a servo's pulse in a frame, cycles, according to the example's description: the width rises
+/// from 1000 us to 2000 us and falls again, by a constant step per frame, which is different for each servo.
+fn expected_width(servo: u64, frame: u64) -> u64 {
     // The example counts the position in 16 bits.
     let position = frame * (16 * servo + 5) % 65_536 % 32_000;
     32_000 - 16_000u64.abs_diff(position)
 }
 
-fn sweep(fidelity: Fidelity) -> Uno {
+/// Loads the example.
+fn load_sweep_example(fidelity: Fidelity) -> Uno {
     let elf = FirmwareBench::elf().with_file_name("examples/sweep.elf");
     Uno::load(&elf, fidelity).unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"))
 }
@@ -24,7 +25,7 @@ fn sweep(fidelity: Fidelity) -> Uno {
 #[test]
 fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
     for fidelity in [Fidelity::DataSheet, Fidelity::Stock] {
-        let mut uno = sweep(fidelity);
+        let mut uno = load_sweep_example(fidelity);
         uno.run_ms(50);
         uno.take_edges();
         let text = b"The quick brown fox jumps over the lazy dog. ";
@@ -34,42 +35,39 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
         uno.run_ms(10_000);
         assert_eq!(*uno.state(), State::Alive);
         let edges = uno.edges();
-        let frame = u64::from(frame_cycles(8));
+        let frame_length = u64::from(frame_cycles(8));
         let servo_edges = edges.iter().filter(|edge| edge.pin != Pin::d(13));
         let servo_edges: Vec<_> = servo_edges.copied().collect();
         assert_eq!(most_pins_high(&servo_edges), 1, "one servo at a time");
         // The first two or three frames are not among the edges.
         let first_width = uno.pulses(Pin::arduino(PINS[0]))[0].width;
         let skipped_frames = (0..10)
-            .find(|n| width(0, *n) == first_width)
-            .expect("it is one of the first");
+            .find(|n| expected_width(0, *n) == first_width)
+            .expect("one of the first ten frames");
         for (servo, pin) in PINS.into_iter().enumerate() {
             let pulses = uno.pulses(Pin::arduino(pin));
             assert!(pulses.len() > 880, "{} of {pin}", pulses.len());
             for (n, pulse) in pulses.iter().enumerate() {
-                let expected = width(servo as u64, skipped_frames + n as u64);
+                let expected = expected_width(servo as u64, skipped_frames + n as u64);
                 assert_eq!(pulse.width, expected, "{fidelity:?}, pin {pin}, frame {n}");
             }
             for pair in pulses.windows(2) {
                 // The rising edges are exactly one frame apart.
                 assert_eq!(
                     pair[1].start - pair[0].start,
-                    frame,
+                    frame_length,
                     "{fidelity:?}, pin {pin}"
                 );
             }
         }
         let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
-        // The line was full in both directions. Stock simavr sends more slowly than it
-        // receives, so only the simulation by the data sheet loses nothing.
+        // The line was full in both directions. Stock simavr sends more slowly than it receives, so only the simulation
+        // by the data sheet loses no bytes.
         if fidelity == Fidelity::DataSheet {
             assert!(echo.len() > 115_000, "{} bytes", echo.len());
             let sent: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
             let wrong_index = (0..echo.len()).find(|n| echo[*n] != sent[*n]);
-            assert_eq!(
-                wrong_index, None,
-                "the first byte that is not what was sent"
-            );
+            assert_eq!(wrong_index, None, "the first wrong byte of the echo");
             assert_eq!((uno.overruns(), uno.bytes_sent()), (0, echo.len() as u64));
         } else {
             assert!(echo.len() > 100_000, "{} bytes", echo.len());
@@ -79,7 +77,7 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
 
 #[test]
 fn the_led_blinks_every_sixteen_frames() {
-    let mut uno = sweep(Fidelity::DataSheet);
+    let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(3_000);
     let blinks = uno.pulses(Pin::d(13));
     assert_eq!(blinks.len(), 4);
@@ -90,8 +88,8 @@ fn the_led_blinks_every_sixteen_frames() {
 }
 
 #[test]
-fn the_costs_in_the_readme_are_those_of_the_example() {
-    let mut uno = sweep(Fidelity::DataSheet);
+fn the_costs_in_the_readme_equal_those_of_the_example() {
+    let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(100);
     let interrupt_cycles = |uno: &Uno| {
         let interrupts = uno.interrupts();
@@ -103,11 +101,11 @@ fn the_costs_in_the_readme_are_those_of_the_example() {
         };
         cycles_of(11) + cycles_of(12)
     };
-    let state_before = (interrupt_cycles(&uno), uno.cycle());
+    let cycles_before = interrupt_cycles(&uno);
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
-    let per_frame = (interrupt_cycles(&uno) - state_before.0) as f64 / 100.0;
+    let cycles_per_frame = (interrupt_cycles(&uno) - cycles_before) as f64 / 100.0;
     let readme =
-        std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("it is there");
+        std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("the README exists");
     let cells_of_row = |name: &str| -> Vec<String> {
         let row = readme
             .lines()
@@ -121,7 +119,7 @@ fn the_costs_in_the_readme_are_those_of_the_example() {
         cell.parse::<f64>()
             .unwrap_or_else(|_| panic!("{cell} is a number"))
     };
-    // Another compiler may save a byte or two.
+    // The tolerance is 2 %, because another compiler may save a few bytes.
     let assert_near = |name: &str, measured: f64| {
         let stated_value = parse_number(&cells_of_row(name)[2]);
         let error = (measured - stated_value).abs();
@@ -130,7 +128,7 @@ fn the_costs_in_the_readme_are_those_of_the_example() {
             "{name}: {measured}, not {stated_value}"
         );
     };
-    assert_near("cycles of its interrupts in a frame", per_frame);
+    assert_near("cycles of its interrupts in a frame", cycles_per_frame);
     let image = uno.image();
     assert_near(
         "flash of the whole example, bytes",
@@ -143,7 +141,7 @@ fn the_costs_in_the_readme_are_those_of_the_example() {
 }
 
 #[test]
-fn the_limits_of_a_width_are_far_beyond_a_servos_travel() {
+fn the_limits_of_a_pulses_width_are_far_beyond_a_servos_travel() {
     assert!(u32::from(MIN_WIDTH_CYCLES) <= 16 * 400);
     assert!((1..=8).all(|servos| u32::from(max_width_cycles(servos)) >= 16 * 2_400));
 }

@@ -1,13 +1,13 @@
-//! Tests of the stack depth that is computed from machine code: compared with the known depth of programs,
-//! and with measured depths.
+//! Tests of the stack depth that is computed from machine code. It is compared with the known and the measured depth of
+//! programs.
 
 use lizard_host::bench::{StackDepth, StackError};
 use lizard_host_tests::avr_gcc::{assemble, compile_c};
 use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Code that sets the stack pointer up as avr-libc does, from r28 and r29.
-const BEGIN: &str = "
+/// Code that sets the stack pointer from r28 and r29, as avr-libc does.
+const SET_STACK_POINTER: &str = "
         ldi r28, 0xff $ ldi r29, 0x08
         out SPH, r29 $ out SPL, r28";
 
@@ -15,11 +15,11 @@ fn depth_of(image: &Image) -> StackDepth {
     StackDepth::of(image).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn refusal_of(image: &Image) -> StackError {
-    StackDepth::of(image).expect_err("it must be refused")
+fn expect_refusal(image: &Image) -> StackError {
+    StackDepth::of(image).expect_err("the program must be refused")
 }
 
-/// Runs a program for 10 ms and returns the depth that its stack reaches.
+/// Runs a program for 10 ms and returns the depth of its stack.
 fn measure_depth(image: &Image) -> u16 {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(10);
@@ -27,10 +27,10 @@ fn measure_depth(image: &Image) -> u16 {
 }
 
 #[test]
-fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
-    // start calls one (2), which pushes 3 and calls two (2), which pushes 1.
+fn pushes_and_calls_are_added_up_along_the_deepest_path() {
+    // The start calls `one` (2 bytes), which pushes 3 bytes and calls `two` (2 bytes), which pushes 1 byte.
     let image = assemble(&format!(
-        "{BEGIN}
+        "{SET_STACK_POINTER}
         rcall one
         call two
     end: rjmp end
@@ -48,12 +48,12 @@ fn pushes_calls_and_returns_are_added_up_along_the_deepest_way() {
     ));
     assert_eq!(depth_of(&image).max_depth(), 2 + 3 + 2 + 1);
     assert_eq!(measure_depth(&image), 8);
-    // There is no static data, so all of SRAM except these bytes is left.
+    // There is no static data, so the rest of SRAM is free.
     assert_eq!(depth_of(&image).margin(), 2048 - 8);
 }
 
 #[test]
-fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
+fn small_and_large_stack_frames_and_jumps_at_the_end_of_a_function_are_counted() {
     for bytes in [1u16, 20, 63, 64, 300] {
         let reserve = match bytes {
             0..64 => format!("sbiw r28, {bytes}"),
@@ -65,7 +65,7 @@ fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
         };
         let set_pointer = "in r0, SREG $ cli $ out SPH, r29 $ out SREG, r0 $ out SPL, r28";
         let image = assemble(&format!(
-            "{BEGIN}
+            "{SET_STACK_POINTER}
             call framed
         end: rjmp end
         framed: push r28 $ push r29
@@ -84,14 +84,14 @@ fn frames_small_and_large_count_and_so_does_a_jump_at_the_end_of_a_function() {
 }
 
 #[test]
-fn the_deepest_interrupt_counts_once() {
+fn only_the_deepest_interrupt_handler_is_counted() {
     let image = assemble(&format!(
         "jmp start
         .org 0x2c
         jmp shallow
         jmp deep
         .org 0x68
-    start: {BEGIN}
+    start: {SET_STACK_POINTER}
         push r16
     end: rjmp end
     shallow: push r0 $ pop r0 $ reti
@@ -103,7 +103,7 @@ fn the_deepest_interrupt_counts_once() {
 }
 
 #[test]
-fn compiled_c_is_followed_and_no_run_gets_deeper() {
+fn the_depth_of_compiled_c_is_an_upper_bound_near_the_measured_depth() {
     let image = compile_c(
         "#include <avr/io.h>
         #include <avr/interrupt.h>
@@ -147,7 +147,7 @@ fn a_function_that_calls_itself_is_refused_by_name() {
         }
         int main(void) { for (;;) deeper(PINB); }",
     );
-    let error = refusal_of(&image).to_string();
+    let error = expect_refusal(&image).to_string();
     assert!(
         error.contains("deeper") && error.contains("calls itself"),
         "{error}"
@@ -164,15 +164,15 @@ fn a_call_of_a_computed_address_is_refused_by_name() {
         __attribute__((noinline)) void choose(void) { which(); GPIOR1 = 1; }
         int main(void) { which = PINB ? one : two; for (;;) choose(); }",
     );
-    let error = refusal_of(&image).to_string();
+    let error = expect_refusal(&image).to_string();
     assert!(
         error.contains("choose") && error.contains("computes"),
         "{error}"
     );
     for jump in ["ijmp", "icall"] {
-        let image = assemble(&format!("{BEGIN}\n{jump}\nend: rjmp end"));
+        let image = assemble(&format!("{SET_STACK_POINTER}\n{jump}\nend: rjmp end"));
         assert!(
-            refusal_of(&image).to_string().contains("computes"),
+            expect_refusal(&image).to_string().contains("computes"),
             "{jump}"
         );
     }
@@ -195,7 +195,8 @@ fn code_without_a_bound_is_refused() {
         ("nop", "runs out"),
     ];
     for (program, reason) in programs {
-        let error = refusal_of(&assemble(&format!("{BEGIN}\n{program}"))).to_string();
+        let error =
+            expect_refusal(&assemble(&format!("{SET_STACK_POINTER}\n{program}"))).to_string();
         assert!(error.contains(reason), "{program}: {error}");
     }
     let image = assemble(
@@ -206,12 +207,12 @@ fn code_without_a_bound_is_refused() {
     start: rjmp start
     handler: sei $ reti",
     );
-    let error = refusal_of(&image).to_string();
+    let error = expect_refusal(&image).to_string();
     assert!(error.contains("lets interrupts into"), "{error}");
 }
 
 #[test]
-fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
+fn a_handler_that_never_returns_but_enables_interrupts_is_added_to_the_deepest_other_handler() {
     let image = assemble(
         "jmp start
         .org 0x2c
@@ -233,10 +234,10 @@ fn a_handler_that_lets_others_in_forever_lies_below_the_deepest_of_them() {
 }
 
 #[test]
-fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
+fn the_registers_and_the_room_of_shared_prologues_are_counted() {
     for (first_register, saved_bytes, room_bytes) in [(2, 18, 0), (14, 6, 5), (18, 2, 200)] {
         let image = assemble(&format!(
-            "{BEGIN}
+            "{SET_STACK_POINTER}
             call framed
         end: rjmp end
         framed: ldi r26, {room_bytes} $ call __frame_save_{first_register}
@@ -246,8 +247,8 @@ fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
         leaf: ret
         {ROUTINES}"
         ));
-        // On the stack are the return address of `framed`, the saved registers, the room, and below the room the
-        // return address of `leaf`.
+        // The stack holds the return address of `framed`, the saved registers, the room, and the return address of
+        // `leaf`.
         assert_eq!(
             depth_of(&image).max_depth(),
             2 + saved_bytes + room_bytes + 2,
@@ -262,10 +263,10 @@ fn shared_beginnings_and_ends_count_what_they_save_and_make_room_for() {
 }
 
 #[test]
-fn a_shared_end_that_does_not_fit_its_beginning_is_refused() {
+fn a_shared_epilogue_that_does_not_match_its_prologue_is_refused() {
     for (first_register, room_bytes) in [(16, 5), (14, 6)] {
         let image = assemble(&format!(
-            "{BEGIN}
+            "{SET_STACK_POINTER}
             call framed
         end: rjmp end
         .type framed, @function
@@ -273,7 +274,7 @@ fn a_shared_end_that_does_not_fit_its_beginning_is_refused() {
             ldi r26, {room_bytes} $ jmp __frame_restore_{first_register}
         {ROUTINES}"
         ));
-        let error = refusal_of(&image);
+        let error = expect_refusal(&image);
         assert_eq!(error.function, "framed");
         assert_eq!(error.reason, "restores other registers than it saved");
     }

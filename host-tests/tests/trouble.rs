@@ -1,20 +1,28 @@
-//! Tests with trouble at random moments of all activities: a hundredth of the scenarios of `make trouble`.
+//! Tests with trouble at random moments of all activities. They play about a hundredth of the scenarios of
+//! `make trouble`.
 
 use std::collections::BTreeSet;
 use std::thread;
 
-use lizard_host_tests::trouble::{Activity, Scenario, campaign, play};
-use lizard_host_tests::{FirmwareBench, patrol_of, patrolling, root, seed};
+use lizard_host_tests::trouble::{Activity, Scenario, play, run_campaign};
+use lizard_host_tests::{FirmwareBench, patrolling_robot, robot_with_patrol, root, seed};
 use lizard_robot::Robot;
 
-/// Number of scenarios. Of thirteen scenarios, four are drives, and each other activity has one.
-const COUNT: u64 = 156;
+/// Number of scenarios. Of thirteen scenarios, four are drives, and each of the other nine activities has one.
+const SCENARIO_COUNT: u64 = 156;
 
 #[test]
 fn trouble_at_any_moment_breaks_no_rule() {
-    let image = FirmwareBench::image_with(patrolling());
-    let threads = thread::available_parallelism().map_or(1, |n| n.get());
-    let summary = campaign(&image, patrolling(), seed(), COUNT, threads, |_, _| {});
+    let image = FirmwareBench::image_with(patrolling_robot());
+    let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
+    let summary = run_campaign(
+        &image,
+        patrolling_robot(),
+        seed(),
+        SCENARIO_COUNT,
+        thread_count,
+        |_, _| {},
+    );
     let first_failure = summary.failures.first();
     assert!(
         summary.failures.is_empty(),
@@ -23,38 +31,46 @@ fn trouble_at_any_moment_breaks_no_rule() {
         seed(),
         first_failure.map_or(0, |failure| failure.scenario.number),
     );
-    let activities: BTreeSet<Activity> = Activity::ALL.into();
-    let played: BTreeSet<Activity> = summary.activities.keys().copied().collect();
-    assert_eq!(played, activities);
+    let all_activities: BTreeSet<Activity> = Activity::ALL.into();
+    let played_activities: BTreeSet<Activity> = summary.activities.keys().copied().collect();
+    assert_eq!(played_activities, all_activities);
     for (activity, (played_count, _)) in summary.activities {
-        let share = if activity == Activity::Driving { 4 } else { 1 };
-        assert_eq!(played_count, share * COUNT / 13, "{activity}");
+        let scenarios_of_13 = if activity == Activity::Driving { 4 } else { 1 };
+        assert_eq!(
+            played_count,
+            scenarios_of_13 * SCENARIO_COUNT / 13,
+            "{activity}"
+        );
     }
 }
 
 #[test]
-fn a_scenario_follows_from_its_seed_and_number_alone() {
+fn seed_and_number_determine_a_scenario() {
     for number in 0..100 {
-        let scenario = Scenario::of(7, number, patrolling());
-        assert_eq!(scenario, Scenario::of(7, number, patrolling()));
-        assert_ne!(scenario.steps, Scenario::of(8, number, patrolling()).steps);
+        let scenario = Scenario::of(7, number, patrolling_robot());
+        assert_eq!(scenario, Scenario::of(7, number, patrolling_robot()));
+        assert_ne!(
+            scenario.steps,
+            Scenario::of(8, number, patrolling_robot()).steps
+        );
     }
 }
 
 #[test]
-fn most_patrols_of_the_scenarios_get_as_far_as_the_wait_for_a_wall() {
-    let image = FirmwareBench::image_with(patrolling());
-    let scenarios = (0..COUNT).map(|number| Scenario::of(seed(), number, patrolling()));
+fn most_patrols_of_the_scenarios_reach_the_wait_for_a_wall() {
+    let image = FirmwareBench::image_with(patrolling_robot());
+    let scenarios =
+        (0..SCENARIO_COUNT).map(|number| Scenario::of(seed(), number, patrolling_robot()));
     let patrols = scenarios.filter(|scenario| scenario.activity == Activity::Patrolling);
     let reaches_wall_wait = |scenario: &Scenario| {
-        let record = play(&image, patrolling(), scenario);
+        let record = play(&image, patrolling_robot(), scenario);
         record
-            .lines
+            .printed_lines
             .iter()
             .any(|line| line.text == "# waiting for nose")
     };
     let walked_count = patrols.filter(reaches_wall_wait).count() as u64;
-    assert!(walked_count > COUNT / 13 / 2, "{walked_count}");
+    assert!(walked_count > SCENARIO_COUNT / 13 / 2, "{walked_count}");
 }
 
 #[test]
@@ -69,7 +85,7 @@ fn a_robot_without_room_for_a_routine_patrols_with_fewer_gaits() {
         }
     }
     let text = text.rsplit_once("[gait.").expect("a gait").0;
-    let patrolling = patrol_of(text).expect("room for a routine");
+    let patrolling = robot_with_patrol(text).expect("room for a routine");
     assert!(patrolling.gaits().len() < full_robot.gaits().len());
     assert!(patrolling.gaits().len() > 5);
     assert!(patrolling.routine("patrol").is_some());

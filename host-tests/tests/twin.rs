@@ -1,4 +1,4 @@
-//! Test of the running image by the digital twin: from power-on to the position of the body on the floor.
+//! Test of the running image with the digital twin, from power-on to the position of the body on the floor.
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
@@ -11,8 +11,8 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Uno};
 
-/// Walks every gait that moves for three cycles and one more second, in which the robot moves to its first pose.
-fn walk_all(model: ServoModel) -> Replay {
+/// Runs every gait that moves: one second to reach the gait's first pose, then three cycles.
+fn walk_all_gaits(model: ServoModel) -> Replay {
     let mut ms = 1000;
     let mut steps = Vec::new();
     for gait in robot().gaits().iter().filter(|gait| gait.has_movement()) {
@@ -36,18 +36,18 @@ fn walk_all(model: ServoModel) -> Replay {
 #[test]
 fn the_image_moves_the_body_as_its_gaits_predict() {
     let model = ServoModel::Ideal;
-    let report = Report::of(robot(), &walk_all(model), model, false);
+    let report = Report::of(robot(), &walk_all_gaits(model), model, false);
     let cycles: Vec<_> = report
         .rows
         .iter()
         .filter_map(|row| Some((row, row.cycle.as_ref()?)))
         .collect();
-    let moving_count = robot()
+    let moving_gait_count = robot()
         .gaits()
         .iter()
         .filter(|gait| gait.has_movement())
         .count();
-    assert_eq!(cycles.len(), moving_count, "one for each gait");
+    assert_eq!(cycles.len(), moving_gait_count, "one cycle for each gait");
     let mut compared_count = 0;
     for (row, cycle) in cycles {
         let mut compare =
@@ -73,8 +73,12 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
         );
         let (name, margin) = row.margin.expect("every pose closes");
         let limits = robot().limits();
-        let min = limits.type2.min(limits.type1).min(limits.leg);
-        assert!(margin > min - 0.01, "{} {name} {margin}", row.command);
+        let smallest_limit = limits.type2.min(limits.type1).min(limits.leg);
+        assert!(
+            margin > smallest_limit - 0.01,
+            "{} {name} {margin}",
+            row.command
+        );
     }
-    assert!(compared_count > 0, "every gait depends on a tie");
+    assert!(compared_count > 0, "no gait has a prediction to compare");
 }

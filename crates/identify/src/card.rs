@@ -1,14 +1,14 @@
 //! The mounting error of the card with the tag on the robot's deck.
 //!
-//! A rotated card measures a part of the forward movement as drift, and a card off the robot's centre moves on an
-//! arc when the robot turns. If this is ignored, both look like an error of the mass centre or of a foot.
+//! With a rotated card, a part of the forward movement looks like drift. A card away from the robot's centre moves on
+//! an arc when the robot turns. Both would look like an error of the mass centre or of a foot.
 
 use lizard_robot::{Place, Travel};
 
 /// The place of the card on the robot, relative to the chassis centre and its forward direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Card {
-    /// Rotation against the robot's forward direction, deg, counter-clockwise.
+    /// Rotation from the robot's forward direction, deg, counter-clockwise.
     pub turn: f64,
     /// Distance of the card's centre ahead of the chassis centre, mm.
     pub ahead: f64,
@@ -17,11 +17,11 @@ pub struct Card {
 }
 
 /// Number of parameters of a card.
-pub(crate) const COUNT: usize = 3;
+pub(crate) const PARAMETER_COUNT: usize = 3;
 
 impl Card {
     /// Standard deviations of the mounting errors of hand-glued cards: deg, mm, mm.
-    pub(crate) const PRIOR_ERRORS: [f64; COUNT] = [2.0, 2.0, 2.0];
+    pub(crate) const PRIOR_ERRORS: [f64; PARAMETER_COUNT] = [2.0, 2.0, 2.0];
 
     /// Converts a movement of the robot to that of the card, in the card's frame at the start.
     pub(crate) fn card_travel(&self, travel: Travel) -> Travel {
@@ -43,8 +43,8 @@ impl Card {
     }
 }
 
-impl From<[f64; COUNT]> for Card {
-    fn from([turn, ahead, left]: [f64; COUNT]) -> Self {
+impl From<[f64; PARAMETER_COUNT]> for Card {
+    fn from([turn, ahead, left]: [f64; PARAMETER_COUNT]) -> Self {
         Self { turn, ahead, left }
     }
 }
@@ -53,7 +53,11 @@ impl From<[f64; COUNT]> for Card {
 mod tests {
     use super::*;
 
-    fn assert_seen(card: [f64; COUNT], robot_travel: [f64; 3], expected_travel: [f64; 3]) {
+    fn assert_card_travel(
+        card: [f64; PARAMETER_COUNT],
+        robot_travel: [f64; 3],
+        expected_travel: [f64; 3],
+    ) {
         let [forward, left, turn] = robot_travel;
         let travel = Card::from(card).card_travel(Travel {
             forward,
@@ -70,14 +74,14 @@ mod tests {
     }
 
     #[test]
-    fn a_card_in_its_place_goes_as_the_robot_does() {
-        assert_seen([0.0; 3], [30.0, 2.0, 15.0], [30.0, 2.0, 15.0]);
+    fn a_card_at_its_nominal_place_moves_like_the_robot() {
+        assert_card_travel([0.0; 3], [30.0, 2.0, 15.0], [30.0, 2.0, 15.0]);
     }
 
     #[test]
-    fn a_card_turned_to_the_left_drifts_to_the_right() {
+    fn a_card_rotated_to_the_left_measures_a_drift_to_the_right() {
         let (sin, cos) = 30f64.to_radians().sin_cos();
-        assert_seen(
+        assert_card_travel(
             [30.0, 4.0, 5.0],
             [10.0, 0.0, 0.0],
             [10.0 * cos, -10.0 * sin, 0.0],
@@ -85,8 +89,8 @@ mod tests {
     }
 
     #[test]
-    fn a_card_ahead_of_the_middle_is_carried_around_it() {
-        // A quarter turn about the middle leads from 10 mm ahead to 10 mm to the left.
-        assert_seen([0.0, 10.0, 0.0], [0.0, 0.0, 90.0], [-10.0, 10.0, 90.0]);
+    fn a_card_ahead_of_the_chassis_centre_moves_around_it() {
+        // A quarter turn about the chassis centre leads from 10 mm ahead to 10 mm to the left.
+        assert_card_travel([0.0, 10.0, 0.0], [0.0, 0.0, 90.0], [-10.0, 10.0, 90.0]);
     }
 }

@@ -1,40 +1,39 @@
 //! The fit of all keys, and the choice of the keys whose value changes.
 //!
-//! First all keys are free. The standard errors of this fit are the ones that are reported, since no key is
-//! held at its file value there: the file has a part in them only by the wide priors. Then keys return to the file's
-//! value one by one: always the key that is nearest to its file value in units of its error, as long as that distance
-//! is below two. After each step the free keys adjust, so if two keys have the same effect, one of them explains what
-//! both have to explain.
+//! First all keys are free. The reported standard errors are those of this fit, since the file influences them only
+//! by the wide priors. Then keys return to the file's value one by one: each time the key that is nearest to its file
+//! value in units of its standard error, as long as that distance is below two. After each return the free keys are
+//! adjusted. So if two keys have the same effect, only one of them changes.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
 
 use crate::card::{self, Card};
 use crate::chi_square::percentile_99;
-use crate::key::{KEY_COUNT, KEYS, PLAY, RATIO, TWIST};
+use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, PLAY_INDEX, TWIST_INDEX};
 use crate::outcome::{Goodness, Identified, KeyResult, Row, Verdict};
-use crate::problem::{Problem, Solution, UNKNOWNS, Values, split};
+use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split};
 use crate::trouble::Trouble;
 use crate::way::MeasuredMovement;
 
-/// Keys for which the model is least linear near the file's value.
-const NONLINEAR_KEYS: [usize; 3] = [PLAY, TWIST, RATIO];
+/// Indices in [`KEYS`] of the keys for which the model is least linear near the file's value.
+const NONLINEAR_KEYS: [usize; 3] = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX];
 /// Least distance from the file's value, in standard errors, at which a key takes its new value.
 const MIN_DISTANCE_ERRORS: f64 = 2.0;
 /// Lower bound for the rise of the sum of squares when a key is moved by [`MIN_DISTANCE_ERRORS`] standard errors. A
-/// smaller rise may be only roughness of the model. The bound limits the growth of an error to a factor of four.
-const LEAST_RISE: f64 = 0.25;
+/// smaller rise may be only roughness of the model. The bound limits the enlargement of an error to a factor of four.
+const MIN_RISE: f64 = 0.25;
 /// Largest standard error of a key that counts as determined, as a share of its prior standard deviation.
 const MAX_ERROR_SHARE: f64 = 0.5;
 /// Correlation of errors above which two keys are reported as hard to distinguish.
 const MIN_CORRELATION: f64 = 0.8;
 
-/// A function that calls its second argument for the indices from 0 up to the first argument, one after another or
-/// on all cores, and returns the results in order.
+/// A function of a count and a job. It runs the job for each index from 0 to the count less 1, one after another or on
+/// all cores, and returns the results in order.
 pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
-/// Identifies the keys of a robot from its measured movements. `run_all` runs gaits of the model: a few hundred runs of
-/// about a tenth of a second each.
+/// Identifies the keys of a robot from its measured movements. `run_all` runs the simulations of the gaits: a few
+/// hundred of about a tenth of a second each.
 ///
 /// # Errors
 /// Fails for a gait that the robot does not have or that moves no servo, for figures that are not finite or out of
@@ -58,7 +57,7 @@ pub fn identify(
             .all(|figure| figure.is_finite());
         if !is_all_finite || movement.pace <= 0.0 || movement.error.iter().any(|error| *error < 0.0)
         {
-            return Err(Trouble::NoNumber(movement.gait.clone()));
+            return Err(Trouble::InvalidFigure(movement.gait.clone()));
         }
         let prediction = robot.predict(gait);
         for (i, component) in [prediction.forward, prediction.left, prediction.turn]
@@ -82,31 +81,31 @@ pub fn identify(
             gait.simulate_driven_cycle(&ground, &motors, pace)
         })
     };
-    let start = std::array::from_fn(|i| KEYS[i].value_in(robot.ground()));
-    solve(&movements, start, &predict)
+    let file_values = std::array::from_fn(|i| KEYS[i].value_in(robot.ground()));
+    solve(&movements, file_values, &predict)
 }
 
 /// Finds the keys with which the model `predict` reproduces the measured movements. `start` are the file's values.
 pub(crate) fn solve(
     movements: &[MeasuredMovement],
-    start: Values,
+    file_values: Values,
     predict: &dyn Fn(&Values) -> Vec<Travel>,
 ) -> Result<Identified, Trouble> {
-    let problem = Problem::new(movements, start, predict);
-    if problem.figures() == 0 {
+    let problem = Problem::new(movements, file_values, predict);
+    if problem.figure_count() == 0 {
         return Err(Trouble::NothingDetermined);
     }
-    let all_unknowns: Vec<usize> = (0..UNKNOWNS).collect();
+    let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let Fit {
-        full: full_fit,
-        freedom,
-        limit,
-        explains: is_explained,
+        solution: full_fit,
+        degrees_of_freedom,
+        chi_square_limit,
+        is_explained,
     } = fit_all(&problem)?;
     // Deviations that the model does not explain widen the errors of the keys (ratio of Birge, 1932).
-    let error_factor = match freedom < 1.0 {
+    let error_factor = match degrees_of_freedom < 1.0 {
         true => 1.0,
-        false => (full_fit.chi_square / freedom).sqrt().max(1.0),
+        false => (full_fit.chi_square / degrees_of_freedom).sqrt().max(1.0),
     };
     let errors = errors_of(&problem, &full_fit).map(|error| error_factor * error);
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
@@ -120,12 +119,12 @@ pub(crate) fn solve(
         let parts = parts.into_iter().enumerate();
         parts.map(move |(part, difference)| (row, part, difference))
     });
-    let worst = all_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let largest_difference = all_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
     let new_values = split(&last_fit.unknowns).0;
     let key_result_of = |(i, key): (usize, &'static crate::Key)| KeyResult {
         key,
-        before: start[i],
-        after: new_values[i],
+        file_value: file_values[i],
+        new_value: new_values[i],
         error: errors[i],
         verdict: verdicts[i],
     };
@@ -134,28 +133,28 @@ pub(crate) fn solve(
         .into_iter()
         .zip(problem.predicted_on_card(&last_fit.unknowns));
     let rows = movements.iter().zip(predictions);
-    let row_of = |(movement, (before, after)): (&MeasuredMovement, _)| Row {
-        way: movement.clone(),
-        before,
-        after,
+    let row_of = |(movement, (predicted_before, predicted_after)): (&MeasuredMovement, _)| Row {
+        measured: movement.clone(),
+        predicted_before,
+        predicted_after,
     };
-    let card_errors: [f64; card::COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
+    let card_errors: [f64; card::PARAMETER_COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
     Ok(Identified {
         keys: KEYS.iter().enumerate().map(key_result_of).collect(),
         card: [split(&last_fit.unknowns).1, Card::from(card_errors)],
-        correlated: correlated_pairs(&full_fit.covariance),
+        correlated_pairs: correlated_pairs(&full_fit.covariance),
         goodness: Goodness {
-            figures: problem.figures(),
-            chi_square: [
+            figure_count: problem.figure_count(),
+            chi_squares: [
                 card_only.chi_square,
                 last_fit.chi_square,
                 full_fit.chi_square,
             ],
-            freedom,
-            chi_square_limit: limit,
+            degrees_of_freedom,
+            chi_square_limit,
             is_explained,
             error_factor,
-            worst: worst.ok_or(Trouble::NothingDetermined)?,
+            largest_difference: largest_difference.ok_or(Trouble::NothingDetermined)?,
         },
         rows: rows.map(row_of).collect(),
     })
@@ -163,26 +162,26 @@ pub(crate) fn solve(
 
 /// A fit of all unknowns, and its agreement with the measurements.
 struct Fit {
-    full: Solution,
-    freedom: f64,
+    solution: Solution,
+    degrees_of_freedom: f64,
     /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
-    limit: f64,
-    explains: bool,
+    chi_square_limit: f64,
+    is_explained: bool,
 }
 
 /// Fits all unknowns, from several starts if the first fit is poor.
 ///
-/// The model is not linear: which feet carry the body changes with the foot that is too long, and small play may
-/// have no effect at all. So a fit that leaves a larger sum of squares than a correct model does on average is
+/// The model is not linear: another foot length changes which feet carry the body, and small play may have no effect
+/// at all. So a fit that leaves a larger sum of squares than a correct model does on average is
 /// repeated from starts in which one of the nonlinear keys is one prior standard deviation above or below the file's
 /// value. A sum below the limit of a correct model is not enough, since a local minimum may reach that limit, too.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
-    let all_unknowns: Vec<usize> = (0..UNKNOWNS).collect();
+    let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let start = problem.start_unknowns();
     let other_starts = NONLINEAR_KEYS.iter().flat_map(|&key| {
         [1.0, -1.0].map(|side| {
             let mut guess = start;
-            guess[key] = (start[key] + side * problem.prior_errors[key]).max(KEYS[key].least);
+            guess[key] = (start[key] + side * problem.prior_errors[key]).max(KEYS[key].min_value);
             guess
         })
     });
@@ -191,24 +190,24 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
         let Some(full_fit) = problem.fit(&all_unknowns, &guess) else {
             continue;
         };
-        let freedom = freedom_of(problem, &full_fit);
-        let limit = if freedom < 1.0 {
+        let degrees_of_freedom = degrees_of_freedom_of(problem, &full_fit);
+        let chi_square_limit = if degrees_of_freedom < 1.0 {
             0.0
         } else {
-            percentile_99(freedom)
+            percentile_99(degrees_of_freedom)
         };
-        let is_explained = freedom < 1.0 || full_fit.chi_square <= limit;
-        let is_common = freedom < 1.0 || full_fit.chi_square <= freedom;
-        let is_better = |best_fit: &Fit| full_fit.chi_square < best_fit.full.chi_square;
+        let is_explained = degrees_of_freedom < 1.0 || full_fit.chi_square <= chi_square_limit;
+        let is_typical = degrees_of_freedom < 1.0 || full_fit.chi_square <= degrees_of_freedom;
+        let is_better = |best_fit: &Fit| full_fit.chi_square < best_fit.solution.chi_square;
         if best_fit.as_ref().is_none_or(is_better) {
             best_fit = Some(Fit {
-                full: full_fit,
-                freedom,
-                limit,
-                explains: is_explained,
+                solution: full_fit,
+                degrees_of_freedom,
+                chi_square_limit,
+                is_explained,
             });
         }
-        if is_common {
+        if is_typical {
             break;
         }
     }
@@ -218,10 +217,10 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
 /// Standard errors of a fit of all unknowns.
 ///
 /// The errors from the derivatives hold only for a linear model. The contact model has folds: a foot that is a
-/// little longer takes over a load, and an even longer one changes nothing more. So each key is moved by two errors
-/// in both directions, and the others follow by their correlation with it. In a linear model the sum of squares
-/// would rise by four; where it rises less, the error is enlarged accordingly.
-fn errors_of(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWNS] {
+/// little longer takes over a load, and an even longer foot changes nothing more. So each key is moved by two standard
+/// errors in both directions, and the other unknowns follow according to their correlation with the key. In a linear
+/// model the sum of squares would rise by four. If it rises less, the error is enlarged accordingly.
+fn errors_of(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
     let least_cost = problem.cost(&full_fit.unknowns);
     std::array::from_fn(|i| {
         let error = full_fit.covariance[(i, i)].max(0.0).sqrt();
@@ -235,17 +234,17 @@ fn errors_of(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWNS] {
             };
             problem.cost(&std::array::from_fn(moved_unknown_at)) - least_cost
         };
-        let rise = rise_on_side(1.0).min(rise_on_side(-1.0)).max(LEAST_RISE);
+        let rise = rise_on_side(1.0).min(rise_on_side(-1.0)).max(MIN_RISE);
         error * (MIN_DISTANCE_ERRORS / rise.sqrt()).max(1.0)
     })
 }
 
-/// Degrees of freedom of a fit of all unknowns: the figures less the share of each unknown that the measurements,
-/// and not its prior, determine.
-fn freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
-    let shares =
-        (0..UNKNOWNS).map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
-    problem.figures() as f64 - shares.sum::<f64>()
+/// Degrees of freedom of a fit of all unknowns: the number of figures, less the share of each unknown that the
+/// measurements determine and not its prior.
+fn degrees_of_freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
+    let shares = (0..UNKNOWN_COUNT)
+        .map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
+    problem.figure_count() as f64 - shares.sum::<f64>()
 }
 
 /// Returns keys to the file's values until every free key differs from its file value by at least
@@ -254,7 +253,7 @@ fn freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
 fn choose_keys(
     problem: &Problem,
     full_fit: &Solution,
-    errors: &[f64; UNKNOWNS],
+    errors: &[f64; UNKNOWN_COUNT],
 ) -> Result<(Solution, [Verdict; KEY_COUNT]), Trouble> {
     let mut verdicts = [Verdict::Moved; KEY_COUNT];
     let mut guess = full_fit.unknowns;
@@ -277,7 +276,7 @@ fn choose_keys(
                 .get(*i)
                 .is_none_or(|verdict| *verdict == Verdict::Moved)
         };
-        let free_unknowns: Vec<usize> = (0..UNKNOWNS).filter(is_free).collect();
+        let free_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).filter(is_free).collect();
         let last_fit = problem.fit(&free_unknowns, &guess).ok_or(Trouble::NoFit)?;
         guess = last_fit.unknowns;
         if next_to_hold(&verdicts, &guess, &start, errors).is_none() {
@@ -289,9 +288,9 @@ fn choose_keys(
 /// The next key to return to the file's value, and the reason; `None` if all free keys may keep their new values.
 fn next_to_hold(
     verdicts: &[Verdict; KEY_COUNT],
-    unknowns: &[f64; UNKNOWNS],
-    start: &[f64; UNKNOWNS],
-    errors: &[f64; UNKNOWNS],
+    unknowns: &[f64; UNKNOWN_COUNT],
+    start: &[f64; UNKNOWN_COUNT],
+    errors: &[f64; UNKNOWN_COUNT],
 ) -> Option<(usize, Verdict)> {
     let free_keys = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
     let distance_of = |i: usize| (unknowns[i] - start[i]).abs() / errors[i];
@@ -299,23 +298,23 @@ fn next_to_hold(
     if distance_of(nearest_key) < MIN_DISTANCE_ERRORS {
         return Some((nearest_key, Verdict::Unchanged));
     }
-    let low_key = free_keys().find(|&i| unknowns[i] < KEYS[i].least)?;
+    let low_key = free_keys().find(|&i| unknowns[i] < KEYS[i].min_value)?;
     Some((low_key, Verdict::Impossible(unknowns[low_key])))
 }
 
 /// Holds a key at the file's value, and moves the other unknowns according to their correlation with it.
 fn hold(
     key: usize,
-    start: &[f64; UNKNOWNS],
-    unknowns: &mut [f64; UNKNOWNS],
+    start: &[f64; UNKNOWN_COUNT],
+    unknowns: &mut [f64; UNKNOWN_COUNT],
     covariance: &mut DMatrix<f64>,
 ) {
     let variance = covariance[(key, key)];
     let column: Vec<f64> = covariance.column(key).iter().copied().collect();
     let shift = (unknowns[key] - start[key]) / variance;
-    for i in 0..UNKNOWNS {
+    for i in 0..UNKNOWN_COUNT {
         unknowns[i] -= column[i] * shift;
-        for j in 0..UNKNOWNS {
+        for j in 0..UNKNOWN_COUNT {
             covariance[(i, j)] -= column[i] * column[j] / variance;
         }
     }

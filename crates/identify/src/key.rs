@@ -15,13 +15,13 @@ pub struct Key {
     pub unit: &'static str,
     /// Another method to measure the number, in words.
     pub other_method: &'static str,
-    /// Name of the assumption whose plausible range is the key's.
-    assumed: &'static str,
-    /// Step of the numerical derivative: large compared with the roughness of a model with dead bands and sticking
-    /// pads, small compared with its curvature.
-    pub(crate) step: f64,
+    /// Name of the assumption in `lizard_robot` whose plausible range is that of the key.
+    assumption_name: &'static str,
+    /// Step of the numerical derivative: large compared with the roughness of the model, and small compared with its
+    /// curvature.
+    pub(crate) derivative_step: f64,
     /// Least possible value.
-    pub(crate) least: f64,
+    pub(crate) min_value: f64,
     field: fn(&mut Ground) -> &mut f64,
 }
 
@@ -37,9 +37,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
         meaning: "mounting of the legs",
         unit: "deg",
         other_method: "a photo from above shows it",
-        assumed: "mounting of the legs",
-        step: 1.0,
-        least: f64::NEG_INFINITY,
+        assumption_name: "mounting of the legs",
+        derivative_step: 1.0,
+        min_value: f64::NEG_INFINITY,
         field: |ground| &mut ground.feet.mount_angle,
     },
     Key {
@@ -48,9 +48,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
         meaning: "play of a leg",
         unit: "deg",
         other_method: "trial 2 of docs/measure.md measures it",
-        assumed: "play of a leg",
-        step: 0.1,
-        least: 0.0,
+        assumption_name: "play of a leg",
+        derivative_step: 0.1,
+        min_value: 0.0,
         field: |ground| &mut ground.drive.play,
     },
     Key {
@@ -59,9 +59,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
         meaning: "mass centre ahead",
         unit: "mm",
         other_method: "balance the robot on an edge",
-        assumed: "mass centre ahead",
-        step: 1.0,
-        least: f64::NEG_INFINITY,
+        assumption_name: "mass centre ahead",
+        derivative_step: 1.0,
+        min_value: f64::NEG_INFINITY,
         field: |ground| &mut ground.body.mass_centre[0],
     },
     Key {
@@ -70,9 +70,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
         meaning: "mass centre to the left",
         unit: "mm",
         other_method: "balance the robot on an edge",
-        assumed: "mass centre ahead",
-        step: 1.0,
-        least: f64::NEG_INFINITY,
+        assumption_name: "mass centre ahead",
+        derivative_step: 1.0,
+        min_value: f64::NEG_INFINITY,
         field: |ground| &mut ground.body.mass_centre[1],
     },
     Key {
@@ -81,9 +81,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
         meaning: "front left foot too long",
         unit: "mm",
         other_method: "a scale under each foot tells it, by docs/measure.md",
-        assumed: "front left foot too long",
-        step: 0.2,
-        least: f64::NEG_INFINITY,
+        assumption_name: "front left foot too long",
+        derivative_step: 0.2,
+        min_value: f64::NEG_INFINITY,
         field: |ground| &mut ground.stance.twist,
     },
     Key {
@@ -92,9 +92,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
         meaning: "friction of a pad",
         unit: "",
         other_method: "it cancels, but for the load of the servos; a board that is tilted until the robot slides gives it",
-        assumed: "friction of a pad",
-        step: 0.05,
-        least: 0.05,
+        assumption_name: "friction of a pad",
+        derivative_step: 0.05,
+        min_value: 0.05,
         field: |ground| &mut ground.friction_coefficient,
     },
     Key {
@@ -103,19 +103,19 @@ pub const KEYS: [Key; KEY_COUNT] = [
         meaning: "friction backward over forward",
         unit: "",
         other_method: "trial 1 of docs/measure.md measures it",
-        assumed: "friction backward over forward",
-        step: 0.03,
-        least: 0.1,
+        assumption_name: "friction backward over forward",
+        derivative_step: 0.03,
+        min_value: 0.1,
         field: |ground| &mut ground.friction_ratio,
     },
 ];
 
 /// Index in [`KEYS`] of the play of a leg.
-pub(crate) const PLAY: usize = 1;
+pub(crate) const PLAY_INDEX: usize = 1;
 /// Index in [`KEYS`] of the excess length of the front left foot.
-pub(crate) const TWIST: usize = 4;
+pub(crate) const TWIST_INDEX: usize = 4;
 /// Index in [`KEYS`] of the ratio of the friction backward to the friction forward.
-pub(crate) const RATIO: usize = 6;
+pub(crate) const FRICTION_RATIO_INDEX: usize = 6;
 
 impl Key {
     /// The name with its index, as in `body.centre[0]`.
@@ -137,7 +137,8 @@ impl Key {
 
     /// Standard deviation of the value before anything is measured: half of the width of its plausible range.
     pub fn prior_error(&self) -> f64 {
-        let [low, high] = plausible_range(self.assumed).expect("a test looks for each");
+        let [low, high] =
+            plausible_range(self.assumption_name).expect("a test checks that each key has a range");
         (high - low) / 2.0
     }
 }
@@ -150,13 +151,13 @@ mod tests {
     fn every_key_has_a_plausible_range_in_which_its_step_is_small() {
         for key in KEYS {
             assert!(
-                key.prior_error() >= 5.0 * key.step,
+                key.prior_error() >= 5.0 * key.derivative_step,
                 "{} {}",
                 key.name,
                 key.prior_error()
             );
         }
-        let names = [PLAY, TWIST, RATIO].map(|key| KEYS[key].name);
+        let names = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX].map(|key| KEYS[key].name);
         assert_eq!(
             names,
             [

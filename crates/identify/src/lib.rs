@@ -1,4 +1,4 @@
-//! Identification of a built robot: the keys of robot.toml with which the contact model moves as the robot did.
+//! Identification of a built robot: the values of robot.toml with which the contact model moves as the robot did.
 //!
 //! Some keys are assumptions until the robot stands on its floor: the play of its legs, the grain of its pads, a
 //! foot that is too long, the mass centre, the mounting of the legs. A film shows how far the robot moves in a
@@ -7,9 +7,10 @@
 //! tag's card on the deck ([`Card`]); an error of that position would otherwise look like drift.
 //!
 //! A key that the movements do not determine keeps its value. A key whose standard error stays above half of its
-//! prior one counts as unknown ([`Verdict::Undetermined`]); a key that would move by less than two standard errors
-//! counts as right ([`Verdict::Unchanged`]). If the model deviates from the movements by more than their errors,
-//! the errors of all keys grow in proportion ([`Goodness`]). [`Identified::text`] writes the new robot.toml.
+//! prior standard deviation counts as undetermined ([`Verdict::Undetermined`]). A key that would move by less than two
+//! standard errors counts as correct ([`Verdict::Unchanged`]). If the model deviates from the movements by more than
+//! their errors, the errors of all keys grow in proportion ([`Goodness`]). [`Identified::updated_robot_toml`] writes
+//! the new robot.toml.
 //!
 //! The crate starts no thread, and reads, stores and prints nothing.
 //!

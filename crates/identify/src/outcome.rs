@@ -9,13 +9,13 @@ use crate::way::MeasuredMovement;
 pub struct Identified {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<KeyResult>,
-    /// The position of the card, and the standard errors of its parameters.
+    /// The position of the card, then the standard errors of its parameters.
     pub card: [Card; 2],
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
-    pub correlated: Vec<(&'static Key, &'static Key, f64)>,
+    pub correlated_pairs: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
     pub goodness: Goodness,
-    /// The measured movements beside those of the model.
+    /// The measured movements and the predictions of the model.
     pub rows: Vec<Row>,
 }
 
@@ -25,9 +25,10 @@ pub struct KeyResult {
     /// The key.
     pub key: &'static Key,
     /// Value in the file.
-    pub before: f64,
-    /// Value with which the measurements agree best; the file's value unless the key is moved.
-    pub after: f64,
+    pub file_value: f64,
+    /// Value with which the model fits the measurements best; the file's value unless the verdict is
+    /// [`Verdict::Moved`].
+    pub new_value: f64,
     /// Standard error of the value that the measurements give.
     pub error: f64,
     /// The decision about the key.
@@ -41,7 +42,7 @@ pub enum Verdict {
     Moved,
     /// The file's value agrees with the measurements.
     Unchanged,
-    /// The measurements do not determine the key: its standard error stays above half of the prior one.
+    /// The measurements do not determine the key: its standard error stays above half of its prior standard deviation.
     Undetermined,
     /// The measurements ask for this value, which is below the least possible one; the file's value stays.
     Impossible(f64),
@@ -51,12 +52,12 @@ pub enum Verdict {
 #[derive(Clone, Copy, Debug)]
 pub struct Goodness {
     /// Number of measured figures.
-    pub figures: usize,
+    pub figure_count: usize,
     /// Sum of squares of the differences in standard errors: with the file's values, with the new values, and
     /// with all keys free.
-    pub chi_square: [f64; 3],
-    /// Degrees of freedom: the number of figures less those that the fit of all keys used up.
-    pub freedom: f64,
+    pub chi_squares: [f64; 3],
+    /// Degrees of freedom: the number of figures, less the number that the fit of all keys uses up.
+    pub degrees_of_freedom: f64,
     /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
     pub chi_square_limit: f64,
     /// True if the model explains the measurements: with all keys free, the sum of squares is not above the limit
@@ -65,33 +66,33 @@ pub struct Goodness {
     /// Factor by which all errors were widened.
     pub error_factor: f64,
     /// Row, part and value of the largest difference with the new values, in standard errors.
-    pub worst: (usize, usize, f64),
+    pub largest_difference: (usize, usize, f64),
 }
 
-/// A measured movement beside that of the model.
+/// A measured movement and the predictions of the model.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The measured movement. A part that is undetermined, because two feet pull against the other two, has an
-    /// infinite error and no weight.
-    pub way: MeasuredMovement,
+    /// The measured movement. A part has an infinite error and no weight if the model cannot predict it, because two
+    /// feet pull against the other two.
+    pub measured: MeasuredMovement,
     /// The model's movement with the file's values.
-    pub before: [f64; 3],
+    pub predicted_before: [f64; 3],
     /// The model's movement with the new values.
-    pub after: [f64; 3],
+    pub predicted_after: [f64; 3],
 }
 
 impl Identified {
-    /// The keys that are moved.
-    pub fn moved(&self) -> impl Iterator<Item = &KeyResult> {
+    /// The keys with a new value.
+    pub fn moved_keys(&self) -> impl Iterator<Item = &KeyResult> {
         let keys = self.keys.iter();
         keys.filter(|result| result.verdict == Verdict::Moved)
     }
 }
 
 impl KeyResult {
-    /// Number of decimals of the value: enough to show two digits of the standard error.
-    pub fn digits(&self) -> usize {
-        let first_decimal = -self.error.log10().floor();
-        (first_decimal + 1.0).clamp(0.0, 6.0) as usize
+    /// Number of decimals of the value that shows two digits of the standard error.
+    pub fn decimal_count(&self) -> usize {
+        let first_digit_decimal = -self.error.log10().floor();
+        (first_digit_decimal + 1.0).clamp(0.0, 6.0) as usize
     }
 }

@@ -6,21 +6,21 @@ use crate::outcome::{Identified, KeyResult};
 use crate::trouble::Trouble;
 
 impl Identified {
-    /// Writes the keys with a new value into the text of the robot's file, each with a comment; all other bytes stay
+    /// Writes the keys with a new value into the text of robot.toml, each with a comment. All other bytes stay
     /// unchanged.
     ///
     /// # Errors
     /// Fails if the text has no place for a key, or if the robot with the new values is refused.
-    pub fn text(&self, text: &str) -> Result<String, Trouble> {
+    pub fn updated_robot_toml(&self, text: &str) -> Result<String, Trouble> {
         let mut new_text = text.to_owned();
-        let mut names: Vec<&str> = self.moved().map(|result| result.key.name).collect();
+        let mut names: Vec<&str> = self.moved_keys().map(|result| result.key.name).collect();
         names.dedup();
         for name in names {
             let key_results = self.keys.iter().filter(|result| result.key.name == name);
             new_text = write_key(&new_text, &key_results.collect::<Vec<_>>())
-                .map_err(|error| Trouble::Text(error.to_string()))?;
+                .map_err(|error| Trouble::TextNotWritable(error.to_string()))?;
         }
-        Robot::parse(&new_text).map_err(|error| Trouble::Refused(error.to_string()))?;
+        Robot::parse(&new_text).map_err(|error| Trouble::RobotRefused(error.to_string()))?;
         Ok(new_text)
     }
 }
@@ -49,21 +49,21 @@ impl KeyResult {
     /// The value for the new file, rounded if it moved.
     fn written_value(&self) -> f64 {
         if !self.is_moved() {
-            return self.before;
+            return self.file_value;
         }
-        let scale = 10f64.powi(self.digits() as i32);
-        (self.after * scale).round() / scale
+        let scale = 10f64.powi(self.decimal_count() as i32);
+        (self.new_value * scale).round() / scale
     }
 
     fn comment_text(&self) -> String {
-        let digits = self.digits();
+        let decimals = self.decimal_count();
         let index_text = match self.key.list_index {
             Some(index) => format!("[{index}] "),
             None => String::new(),
         };
         format!(
-            "{index_text}{:.digits$} +- {:.digits$}, was {:?}",
-            self.after, self.error, self.before
+            "{index_text}{:.decimals$} +- {:.decimals$}, was {:?}",
+            self.new_value, self.error, self.file_value
         )
     }
 }

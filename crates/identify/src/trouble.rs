@@ -11,7 +11,7 @@ pub enum Trouble {
     MovesNoServo(String),
     /// A figure is not finite, its error is negative, or the pace is not positive.
     #[error("the way of `{0}` has a figure that is no number; measure it again")]
-    NoNumber(String),
+    InvalidFigure(String),
     /// No movement is given, or in all of them two feet pull against the other two.
     #[error(
         "in none of these gaits three feet decide the way; measure some that walk or turn, as walk, trot, crawl, left, right"
@@ -22,10 +22,10 @@ pub enum Trouble {
     NoFit,
     /// The text of robot.toml cannot take a new value.
     #[error("{0}; write its table as [table] with one key a line")]
-    Text(String),
+    TextNotWritable(String),
     /// The robot with the new values is refused.
     #[error(
         "the robot that goes like this is refused: {0}; look for a way with a wrong sign or unit"
     )]
-    Refused(String),
+    RobotRefused(String),
 }

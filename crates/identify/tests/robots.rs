@@ -1,4 +1,4 @@
-//! Keys that are changed on purpose are identified from the changed robot's movements, for each robot of `robots/`.
+//! Identification of deliberately changed keys from the simulated movements, for each robot of `robots/`.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -8,10 +8,10 @@ use lizard_identify::{Identified, KEYS, KeyResult, MeasuredMovement, Verdict, id
 use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 
 /// Standard error of a measured mean, mm and deg: that of about eight cycles.
-const ERROR: f64 = 0.03;
+const MEAN_ERROR: f64 = 0.03;
 /// Number of gaits that are filmed.
-const GAITS: usize = 8;
-/// Possible change of each key, in the order of `KEYS`; a robot gets up to three of these changes.
+const GAIT_COUNT: usize = 8;
+/// Possible change of each key, up or down, in the order of `KEYS`; a robot gets up to three of these changes.
 const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
 fn change_key(ground: &mut Ground, key: usize, change: f64) {
@@ -32,12 +32,12 @@ fn normal_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
 
-/// Runs the walks one after another.
-fn run_in_turn(count: usize, walk: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
-    (0..count).map(walk).collect()
+/// Runs the simulations one after another.
+fn run_sequentially(count: usize, simulate: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
+    (0..count).map(simulate).collect()
 }
 
-/// Movements of the fastest gaits of a robot on another ground, with the random errors of a film.
+/// Movements of a robot's fastest gaits on a changed ground, with the random errors of a film.
 fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let speed_of = |gait: &CheckedGait| {
         let prediction = robot.predict(gait);
@@ -51,7 +51,7 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
         .filter(|gait| gait.has_movement())
         .collect();
     gaits.sort_by(|a, b| speed_of(b).total_cmp(&speed_of(a)));
-    gaits.truncate(GAITS);
+    gaits.truncate(GAIT_COUNT);
     let motors = robot.motors();
     let movement_of = |gait: &&CheckedGait| {
         let Travel {
@@ -62,14 +62,14 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
         MeasuredMovement {
             gait: gait.name().to_owned(),
             pace: 1.0,
-            mean: [forward, left, turn].map(|part| part + ERROR * normal_deviate(rng)),
-            error: [ERROR; 3],
+            mean: [forward, left, turn].map(|part| part + MEAN_ERROR * normal_deviate(rng)),
+            error: [MEAN_ERROR; 3],
         }
     };
     gaits.iter().map(movement_of).collect()
 }
 
-/// A robot with changed keys: the true changes, and the identification from its movements.
+/// The true changes of a robot's keys, and the keys that are identified from the robot's movements.
 struct Trial {
     name: String,
     changes: [f64; 7],
@@ -80,7 +80,7 @@ impl Trial {
     fn new(file: &Path, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let robot =
-            Robot::parse(&std::fs::read_to_string(file).expect("a robot")).expect("it is right");
+            Robot::parse(&std::fs::read_to_string(file).expect("a robot")).expect("a valid robot");
         let mut ground = *robot.ground();
         let mut changes = [0.0; 7];
         for _ in 0..3 {
@@ -99,12 +99,12 @@ impl Trial {
                 file.file_stem().expect("a name").to_string_lossy()
             ),
             changes,
-            identified: identify(&robot, &movements, &run_in_turn)
-                .expect("the ways tell something"),
+            identified: identify(&robot, &movements, &run_sequentially)
+                .expect("the movements determine the keys"),
         }
     }
 
-    fn keys(&self) -> impl Iterator<Item = (f64, &KeyResult)> {
+    fn changes_and_results(&self) -> impl Iterator<Item = (f64, &KeyResult)> {
         self.changes.into_iter().zip(&self.identified.keys)
     }
 }
@@ -112,7 +112,7 @@ impl Trial {
 /// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
+fn changed_keys_are_found_within_two_errors_and_correct_keys_stay() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("the robots")
@@ -123,7 +123,7 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
     // Two variants of each file; another SEED gives other variants.
     let seed = std::env::var("SEED")
         .ok()
-        .and_then(|word| word.parse().ok());
+        .and_then(|text| text.parse().ok());
     let first_seed = 2 * seed.unwrap_or(1) - 1;
     let trials: Vec<Trial> = thread::scope(|scope| {
         let robots = files
@@ -142,10 +142,10 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
         let goodness = &trial.identified.goodness;
         println!(
             "{}: chi-square {:.0} of {:.0}",
-            trial.name, goodness.chi_square[1], goodness.chi_square_limit
+            trial.name, goodness.chi_squares[1], goodness.chi_square_limit
         );
-        for (change, result) in trial.keys() {
-            let shift = result.after - result.before;
+        for (change, result) in trial.changes_and_results() {
+            let shift = result.new_value - result.file_value;
             let is_near = (shift - change).abs() < 2.0 * result.error;
             println!(
                 "  {:<34} {change:+.3}: {shift:+.3} +- {:.3} {:?}{}",
@@ -170,7 +170,7 @@ fn keys_that_were_changed_are_found_within_two_errors_and_right_ones_stay() {
         }
     }
     println!(
-        "{near_count} of {changed_count} changed keys within two errors, {moved_count} of {unchanged_count} right ones moved"
+        "{near_count} of {changed_count} changed keys within two errors, {moved_count} of {unchanged_count} correct keys moved"
     );
     assert!(
         changed_count >= 12 && unchanged_count >= 20,

@@ -1,47 +1,46 @@
 //! Degrees of freedom of the body and of the legs, counted and measured.
 //!
-//! Counting (Gruebler) assumes that no two joints impose the same constraint; the rank of the
-//! constraints at a pose does not assume it. Here every moving link has three velocities (vx,
-//! vy of its point at the origin, and omega), every joint gives two rows, and the degrees of
-//! freedom are the columns less the rank.
+//! Counting (Gruebler) assumes that no two joints impose the same constraint. The rank of the constraints at a pose
+//! does not need this assumption. Here every moving link has three velocities: vx and vy of its point at the origin,
+//! and omega. Every joint gives two rows. The degrees of freedom are the number of columns minus the rank.
 //!
-//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one
-//! of them. So the rank is computed again with the driven cranks locked, which adds a row for
-//! each crank. A link that can still move then is loose.
+//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one of them. So the rank
+//! is computed again with the driven cranks locked, which adds a row for each crank. A link that can still move is
+//! loose.
 
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
-/// Singular values below this share of the largest count as zero, so that a singular
-/// pose typed with seven digits is found.
+/// Singular values below this share of the largest singular value count as zero. With this value, a singular pose that
+/// is typed with seven digits is found.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// Links slower than this share of the fastest count as standing still.
+/// Links slower than this share of the fastest link count as standing still.
 const MAX_STILL_SPEED: f64 = 1e-3;
 
-/// The unit of length, mm, that makes rows in mm and in radians comparable.
+/// The unit of length, mm, which makes lengths comparable with angles in radians.
 const LENGTH_UNIT_MM: f64 = 50.0;
 
 /// A mechanism: joints that connect links. Link 0 is fixed.
 struct Mechanism {
     name: &'static str,
-    links: usize,
+    link_count: usize,
     joints: Vec<Joint>,
     /// The numbers of the links that a servo drives.
-    driven: Vec<usize>,
-    /// Groups of links, each with the message if one moves while the driven links are locked.
+    driven_links: Vec<usize>,
+    /// Groups of links, each with the message if one of its links moves while the driven links are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 
 /// A joint between two links.
 struct Joint {
     links: [usize; 2],
-    kind: Kind,
+    kind: JointKind,
 }
 
-/// The kind of a joint and its place, in the pose that is examined.
-enum Kind {
+/// The kind of a joint, with its place in the examined pose.
+enum JointKind {
     /// A pin at a point, mm.
     Revolute(Vector),
     /// A prismatic joint through a point along a direction of length one.
@@ -53,11 +52,11 @@ enum Kind {
 pub struct Mobility {
     /// `body`, or the leg and its servo.
     pub mechanism: &'static str,
-    /// Number of links, the fixed one among them.
+    /// Number of links, including the fixed link.
     pub links: usize,
     /// Number of joints.
     pub joints: usize,
-    /// Gruebler's count, 3 (N - 1 - j) + sum f: N links, j joints with f freedoms each.
+    /// Gruebler's count 3 (N - 1 - j) + sum f, for N links and j joints with f freedoms each.
     pub gruebler: i64,
     /// Rows of the constraint Jacobian.
     pub constraints: usize,
@@ -67,7 +66,7 @@ pub struct Mobility {
     pub rank: usize,
     /// Columns minus rank.
     pub freedoms: usize,
-    /// Degrees of freedom with the driven cranks locked; 0 if no link can move then.
+    /// Degrees of freedom with the driven cranks locked; 0 if no link can move.
     pub locked_freedoms: usize,
     /// Messages for the parts that move while the cranks are locked.
     pub loose: Vec<&'static str>,
@@ -78,24 +77,23 @@ pub struct Mobility {
 
 /// Measures the degrees of freedom of the body and of each leg at a pose.
 pub fn measure(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
-    let legs = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
+    let leg_names = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
     let body = body_mechanism(lizard, solution);
-    let legs = (0..4).map(|i| leg_mechanism(lizard, solution, i, legs[i]));
+    let legs = (0..4).map(|i| leg_mechanism(lizard, solution, i, leg_names[i]));
     std::iter::once(body)
         .chain(legs)
         .map(|mechanism| Mobility::of(&mechanism))
         .collect()
 }
 
-/// The 13 links of the body: chassis, four cranks with their side arms, four
-/// couplers, four slider halves.
+/// The body with its 13 links: chassis, four cranks with their side arms, four couplers, four slider halves.
 fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
     const CRANK_LINKS: [usize; 4] = [1, 2, 3, 4];
     let tips = solution.crank_tips();
     let shafts = lizard.shafts();
     let pin_joint = |first: usize, second: usize, point: Vector| Joint {
         links: [first, second],
-        kind: Kind::Revolute(point),
+        kind: JointKind::Revolute(point),
     };
     let mut joints: Vec<Joint> = (0..4)
         .map(|i| pin_joint(0, CRANK_LINKS[i], shafts[i]))
@@ -119,14 +117,14 @@ fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
         ));
         joints.push(Joint {
             links: halves,
-            kind: Kind::Prismatic(rear_tip, slider.span * (1.0 / slider.d)),
+            kind: JointKind::Prismatic(rear_tip, slider.span * (1.0 / slider.d)),
         });
     }
     Mechanism {
         name: "body",
-        links: 13,
+        link_count: 13,
         joints,
-        driven: CRANK_LINKS.to_vec(),
+        driven_links: CRANK_LINKS.to_vec(),
         parts: &[
             (&[5, 6], "the head's end point is loose (type 2)"),
             (&[7, 8], "the tail's end point is loose (type 2)"),
@@ -136,8 +134,8 @@ fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
     }
 }
 
-/// A leg's four-bar in a frame of its own: ground 0, crank 1, coupler 2, follower 3. The
-/// spring to the body imposes no rigid constraint, so it is not a link.
+/// A leg's four-bar in the leg's frame: ground 0, crank 1, coupler 2, follower 3. The spring to the body imposes no
+/// rigid constraint, so the spring is not a link.
 fn leg_mechanism(
     lizard: &Lizard,
     solution: &Solution,
@@ -154,13 +152,13 @@ fn leg_mechanism(
     ];
     let joints = points.map(|(links, point)| Joint {
         links,
-        kind: Kind::Revolute(point),
+        kind: JointKind::Revolute(point),
     });
     Mechanism {
         name,
-        links: 4,
+        link_count: 4,
         joints: joints.into(),
-        driven: vec![1],
+        driven_links: vec![1],
         parts: &[(
             &[2, 3],
             "coupler and follower may go either way (change point)",
@@ -170,16 +168,16 @@ fn leg_mechanism(
 
 /// The body's degrees of freedom at a pose, by rank.
 pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    freedoms(&body_mechanism(lizard, solution))
+    count_freedoms(&body_mechanism(lizard, solution))
 }
 
 /// The front left leg's degrees of freedom at a pose, by rank.
 pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
+    count_freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
 }
 
 /// A mechanism's degrees of freedom with unlocked servos, by rank.
-fn freedoms(mechanism: &Mechanism) -> usize {
+fn count_freedoms(mechanism: &Mechanism) -> usize {
     let free_jacobian = jacobian(mechanism, &[]);
     free_jacobian.ncols() - rank_of(&free_jacobian.singular_values())
 }
@@ -191,20 +189,20 @@ impl Mobility {
         let free_jacobian = jacobian(mechanism, &[]);
         let (constraints, velocities) = free_jacobian.shape();
         let rank = rank_of(&free_jacobian.singular_values());
-        let locked_svd = SVD::new(jacobian(mechanism, &mechanism.driven), false, true);
+        let locked_svd = SVD::new(jacobian(mechanism, &mechanism.driven_links), false, true);
         let values = &locked_svd.singular_values;
         let zero_limit = RANK_TOLERANCE * values.max();
         let mut loose_parts = Vec::new();
         if let Some(directions) = &locked_svd.v_t {
             for (value, direction) in values.iter().zip(directions.row_iter()) {
                 if *value <= zero_limit {
-                    // Speed of each moving link in this direction.
-                    let speeds: Vec<f64> = (0..mechanism.links - 1)
+                    let speeds: Vec<f64> = (0..mechanism.link_count - 1)
                         .map(|link| direction.columns(3 * link, 3).norm())
                         .collect();
-                    let fastest = speeds.iter().copied().fold(0.0, f64::max);
+                    let max_speed = speeds.iter().copied().fold(0.0, f64::max);
                     loose_parts.extend(mechanism.parts.iter().filter_map(|(links, message)| {
-                        let is_moving = |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * fastest;
+                        let is_moving =
+                            |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * max_speed;
                         links.iter().any(is_moving).then_some(*message)
                     }));
                 }
@@ -214,9 +212,9 @@ impl Mobility {
         loose_parts.dedup();
         Self {
             mechanism: mechanism.name,
-            links: mechanism.links,
+            links: mechanism.link_count,
             joints,
-            gruebler: 3 * (mechanism.links as i64 - 1 - joints as i64) + joints as i64,
+            gruebler: 3 * (mechanism.link_count as i64 - 1 - joints as i64) + joints as i64,
             constraints,
             velocities,
             rank,
@@ -234,11 +232,11 @@ fn rank_of(values: &DVector<f64>) -> usize {
     values.iter().filter(|value| **value > zero_limit).count()
 }
 
-/// The constraints on the velocities of the moving links: two rows for each
-/// joint, and one for each link that is locked against turning.
+/// The constraints on the velocities of the moving links: two rows for each joint, and one row for each link that is
+/// locked against turning.
 fn jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
     let joint_count = mechanism.joints.len();
-    let velocity_count = 3 * (mechanism.links - 1);
+    let velocity_count = 3 * (mechanism.link_count - 1);
     let mut rows = DMatrix::<f64>::zeros(2 * joint_count + locked_links.len(), velocity_count);
     let mut add_entries = |row: usize, link: usize, entries: [f64; 3]| {
         if link > 0 {
@@ -251,7 +249,7 @@ fn jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
         for (link, sign) in [(joint.links[0], 1.0), (joint.links[1], -1.0)] {
             match joint.kind {
                 // Both links give the common point the same velocity, v + omega x p.
-                Kind::Revolute(point) => {
+                JointKind::Revolute(point) => {
                     add_entries(2 * i, link, [sign, 0.0, -sign * point.y / LENGTH_UNIT_MM]);
                     add_entries(
                         2 * i + 1,
@@ -260,7 +258,7 @@ fn jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
                     );
                 }
                 // Both links have the same omega, and the same velocity across the slide.
-                Kind::Prismatic(point, direction) => {
+                JointKind::Prismatic(point, direction) => {
                     let normal = direction.rotated_left();
                     add_entries(2 * i, link, [0.0, 0.0, sign]);
                     add_entries(

@@ -1,4 +1,4 @@
-//! The comparison of the gait that the search has found with the given gait.
+//! The comparison of the given gait with the gait that the search has found.
 
 use lizard_kinematics::Check;
 use lizard_robot::CheckedGait;
@@ -12,23 +12,23 @@ use crate::variation::quantiles;
 pub struct Comparison {
     /// Unit of the speeds: mm/s, or deg/s for a turn.
     pub unit: &'static str,
-    /// Largest servo speed that both gaits may use, deg/s.
+    /// Servo speed that neither gait exceeds, deg/s.
     pub rate: f64,
-    /// The given gait, at the pace at which its fastest servo has the speed `rate`.
-    pub gait: Figures,
+    /// The given gait, at the pace at which its fastest servo turns at `rate`.
+    pub gait: GaitFigures,
     /// The gait that was found.
-    pub tuned: Figures,
+    pub tuned: GaitFigures,
     /// Number of random robots on which both gaits were simulated.
     pub robots: usize,
     /// Number of robots on which the gait that was found is faster than the given gait.
     pub faster: usize,
-    /// Table of robot.toml that defines the gait that was found.
+    /// Table for robot.toml that defines the gait that was found.
     pub fragment: String,
 }
 
 /// Speeds and margins of a gait.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Figures {
+pub struct GaitFigures {
     /// Name of the gait.
     pub name: String,
     /// Time of a cycle, s.
@@ -50,15 +50,15 @@ impl Comparison {
     pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found_gait: &BuiltGait) -> Self {
         // At another pace the gait covers the same distance, so only its period changes.
         let pace_factor = gait.audit().peak_speed.speed / rate;
-        let (given, given_speeds) = Figures::of(judge, gait, pace_factor);
-        let (tuned, tuned_speeds) = Figures::of(judge, found_gait.gait(), 1.0);
+        let (given, given_speeds) = GaitFigures::of(judge, gait, pace_factor);
+        let (tuned, tuned_speeds) = GaitFigures::of(judge, found_gait.gait(), 1.0);
         let faster = tuned_speeds
             .iter()
             .zip(&given_speeds)
-            .filter(|(a, b)| a > b)
+            .filter(|(tuned, given)| tuned > given)
             .count();
         Self {
-            unit: judge.goal().unit(),
+            unit: judge.goal().speed_unit(),
             rate,
             gait: given,
             tuned,
@@ -80,22 +80,26 @@ impl Comparison {
     }
 }
 
-impl Figures {
+impl GaitFigures {
     /// Simulates a gait whose period is multiplied by `pace_factor`; also returns its speed on each robot.
     fn of(judge: &Judge, gait: &CheckedGait, pace_factor: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * pace_factor;
         let audit = gait.audit();
         let margins = [audit.type2, audit.type1, audit.leg];
-        let least_margin = margins
-            .into_iter()
-            .fold(audit.leg, |a, b| if b.value < a.value { b } else { a });
+        let least_margin = margins.into_iter().fold(audit.leg, |least, margin| {
+            if margin.value < least.value {
+                margin
+            } else {
+                least
+            }
+        });
         let speeds = judge.speeds(gait, period);
         let figures = Self {
             name: gait.name().to_owned(),
             period,
             rate: audit.peak_speed.speed / pace_factor,
             margin: (Check::name(least_margin.check), least_margin.value),
-            predicted: judge.goal().progress(&judge.cycle(gait)) / period,
+            predicted: judge.goal().progress(&judge.simulate_ideal_cycle(gait)) / period,
             sg90: judge.speed_on_robot(gait, period),
             speeds: quantiles(speeds.clone(), [0.05, 0.5, 0.95]),
         };

@@ -15,15 +15,15 @@ fn is_front(servo: usize) -> bool {
     LEG_NAMES[servo].ends_with('F')
 }
 
-/// The error for a gait that has no goal; contains the gait's name.
+/// The error for a gait that has no goal, with the gait's name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum GoalError {
-    /// The gait's movement depends on unmeasurable differences between the pads: two feet pull against two.
+    /// Two feet pull against the other two, so the movement depends on unmeasurable differences between the pads.
     #[error(
         "the direction of the gait `{0}` is undecided, since two feet pull against two; tune another gait"
     )]
     Undecided(String),
-    /// The gait stands or returns to its start.
+    /// The gait stands, or the robot is at its start again after each cycle.
     #[error("the gait `{0}` goes nowhere")]
     Nowhere(String),
     /// The gait walks along a curve.
@@ -50,10 +50,10 @@ impl Goal {
     /// Fails for a gait that stands, walks along a curve, or whose movement depends on unmeasurable differences
     /// between the pads.
     pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
-        let name_of_gait = || gait.name().to_owned();
+        let gait_name = || gait.name().to_owned();
         let movement = gait.predict(&ground.with_rigid_drive());
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
-            return Err(GoalError::Undecided(name_of_gait()));
+            return Err(GoalError::Undecided(gait_name()));
         };
         let is_enough = |value: f64, min: f64| value.abs() >= min;
         match (
@@ -62,8 +62,8 @@ impl Goal {
         ) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
-            (false, false) => Err(GoalError::Nowhere(name_of_gait())),
-            (true, true) => Err(GoalError::Arc(name_of_gait())),
+            (false, false) => Err(GoalError::Nowhere(gait_name())),
+            (true, true) => Err(GoalError::Arc(gait_name())),
         }
     }
 
@@ -75,7 +75,7 @@ impl Goal {
         }
     }
 
-    /// True if a movement has almost no component other than that towards this goal.
+    /// True if a movement has almost no component except the one towards this goal.
     pub fn is_true_to(self, movement: &Travel) -> bool {
         match self {
             Self::Ahead(_) => {
@@ -85,8 +85,8 @@ impl Goal {
         }
     }
 
-    /// Returns the sign of a leg's stroke: 1 if the leg moves backward in stance, -1 if it moves forward.
-    pub fn sign(self, servo: usize) -> f64 {
+    /// Sign of a leg's stroke: 1 if the leg moves backward in stance, -1 if it moves forward.
+    pub fn stroke_sign(self, servo: usize) -> f64 {
         match self {
             Self::Ahead(sign) => sign,
             // In a turn to the left, the left feet push forward.
@@ -100,16 +100,16 @@ impl Goal {
         }
     }
 
-    /// Returns the index of the pair of legs that a leg belongs to: 0 for the pair that contains LH, else 1.
-    pub fn pair(self, servo: usize) -> usize {
+    /// Index of a leg's pair: 0 for the pair that contains LH, else 1.
+    pub fn pair_index(self, servo: usize) -> usize {
         match self {
             Self::Ahead(_) => usize::from(is_front(servo)),
             Self::Turn(_) => usize::from(is_front(servo) == is_left(servo)),
         }
     }
 
-    /// Returns the unit of the speed towards this goal.
-    pub const fn unit(self) -> &'static str {
+    /// Unit of the speed towards this goal.
+    pub const fn speed_unit(self) -> &'static str {
         match self {
             Self::Ahead(_) => "mm/s",
             Self::Turn(_) => "deg/s",
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_goal_is_what_the_gait_does() {
+    fn a_goal_is_the_movement_of_its_gait() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let goal_of = |name: &str| {
             let gait = robot.gait(name).expect(name);
@@ -144,10 +144,10 @@ mod tests {
     }
 
     #[test]
-    fn in_a_turn_to_the_left_the_left_legs_run_against_the_others() {
-        let signs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).sign(servo));
+    fn in_a_turn_to_the_left_the_left_legs_push_against_the_others() {
+        let signs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).stroke_sign(servo));
         assert_eq!(signs, [-1.0, 1.0, 1.0, -1.0], "as robot.toml's gain has it");
-        let pairs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).pair(servo));
+        let pairs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).pair_index(servo));
         assert_eq!(pairs[0], pairs[2]);
         assert_eq!(pairs[1], pairs[3]);
         assert_eq!(pairs[3], 0);

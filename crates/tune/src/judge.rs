@@ -1,18 +1,17 @@
 //! The score of a gait. The gait is computed and checked like any gait of robot.toml, at the pace at which its
-//! fastest servo turns at the speed limit, and then simulated on random robots.
+//! fastest servo reaches the speed limit. Then the gait is simulated on random robots.
 
 use lizard_robot::{Bars, CheckedGait, Ground, Robot, Travel};
 use lizard_twin::ServoModel;
 
 use crate::goal::Goal;
-use crate::plan::{Kind, MAX_PERIOD_S, Space, planned};
+use crate::plan::{GaitKind, MAX_PERIOD_S, SearchSpace, plan_gait};
 use crate::variation::{Variation, quantiles};
 
-/// Bounds between which a robot's largest amplitude is searched, deg.
+/// Bounds of the search for a robot's largest amplitude, deg.
 const AMPLITUDE_BOUNDS: (f64, f64) = (5.0, 80.0);
-/// The servos of the random robots. They have a dead band, which reduces small strides by a larger share than wide
-/// ones.
-const SERVOS: ServoModel = ServoModel::SG90;
+/// The servos of the random robots. Their dead band reduces small strides by a larger share than wide strides.
+const SERVO_MODEL: ServoModel = ServoModel::SG90;
 /// A period at which no servo exceeds its speed limit, s. The gait's servo speed is measured at this period.
 const SLOW_PERIOD_S: f64 = 3.0;
 /// Number of iterations that fit the period to the servo speed.
@@ -29,9 +28,9 @@ pub struct BuiltGait {
 }
 
 impl BuiltGait {
-    /// Builds a gait with the shortest period at which no servo is faster than `rate` (deg/s). Returns `None` if the
-    /// gait breaks a limit of the robot, or if that period is longer than [`MAX_PERIOD_S`].
-    pub(crate) fn of(robot: &Robot, bars: &Bars, rate: f64) -> Option<Self> {
+    /// Builds a gait with the shortest period at which no servo is faster than `max_rate` (deg/s). Returns `None` if
+    /// the gait breaks a limit of the robot, or if that period is longer than [`MAX_PERIOD_S`].
+    pub(crate) fn of(robot: &Robot, bars: &Bars, max_rate: f64) -> Option<Self> {
         let build = |period: f64| {
             let bars = Bars {
                 period,
@@ -44,31 +43,39 @@ impl BuiltGait {
         let mut shortest: Option<Self> = None;
         let mut built = build(SLOW_PERIOD_S)?;
         for _ in 0..PERIOD_ITERATIONS {
-            let period = round_period(built.gait().period() * built.peak() / rate);
+            let period = round_period(built.gait().period() * built.peak_rate() / max_rate);
             if period > MAX_PERIOD_S {
                 return None;
             }
             built = build(period)?;
             let is_shorter = |shortest: &Self| period < shortest.gait().period();
-            if built.peak() <= rate && shortest.as_ref().is_none_or(is_shorter) {
+            if built.peak_rate() <= max_rate && shortest.as_ref().is_none_or(is_shorter) {
                 shortest = Some(built.clone());
             }
         }
-        // The peak speed depends on the phases at which frames are sent, so a slightly shorter period may also be
-        // within the rate.
+        // The peak speed depends on the phases at which frames are sent, so a slightly shorter period may also keep
+        // the servos within the limit.
         let shorter_gait = build(shortest.as_ref()?.gait().period() - 0.01);
         shorter_gait
-            .filter(|shorter_gait| shorter_gait.peak() <= rate)
+            .filter(|shorter_gait| shorter_gait.peak_rate() <= max_rate)
             .or(shortest)
     }
 
-    /// Finds the largest amplitude at which a wave gait with the first parameters of the search is within the robot's
-    /// limits, deg.
-    pub(crate) fn widest(robot: &Robot, goal: Goal, rate: f64) -> f64 {
-        let can_walk = |widest: f64| {
-            let start = &Kind::Wave.begin()[0];
-            let bars = planned(Kind::Wave, Space { goal, widest }, "x", start);
-            Self::of(robot, &bars, rate).is_some()
+    /// Finds the largest amplitude, deg, at which a wave gait with the first start parameters of the search is within
+    /// the robot's limits.
+    pub(crate) fn find_max_amplitude(robot: &Robot, goal: Goal, max_rate: f64) -> f64 {
+        let can_walk = |max_amplitude: f64| {
+            let start = &GaitKind::Wave.start_parameters()[0];
+            let bars = plan_gait(
+                GaitKind::Wave,
+                SearchSpace {
+                    goal,
+                    max_amplitude,
+                },
+                "x",
+                start,
+            );
+            Self::of(robot, &bars, max_rate).is_some()
         };
         let (mut low, mut high) = AMPLITUDE_BOUNDS;
         while high - low > 0.2 {
@@ -94,7 +101,7 @@ impl BuiltGait {
     }
 
     /// Speed of the fastest servo, deg/s.
-    fn peak(&self) -> f64 {
+    fn peak_rate(&self) -> f64 {
         self.gait().audit().peak_speed.speed
     }
 }
@@ -111,31 +118,33 @@ pub struct Judge {
     robot: Robot,
     ground: Ground,
     goal: Goal,
-    robots: Vec<Variation>,
+    variations: Vec<Variation>,
 }
 
 impl Judge {
-    /// Draws `robots` random variations of this robot on this ground, from consecutive seeds that begin with `seed`.
-    pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robots: usize, seed: u64) -> Self {
+    /// Draws `robot_count` random variations of this robot on this ground, from consecutive seeds, the first of which
+    /// is `seed`.
+    pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robot_count: usize, seed: u64) -> Self {
         let variation_of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
         Self {
             robot: robot.clone(),
             ground: *ground,
             goal,
-            robots: (0..robots as u64).map(variation_of).collect(),
+            variations: (0..robot_count as u64).map(variation_of).collect(),
         }
     }
 
     /// Computes the speed of a gait on each random robot, mm/s or deg/s.
     pub fn speeds(&self, gait: &CheckedGait, period: f64) -> Vec<f64> {
-        let movement_of = |variation: &Variation| variation.walked(&self.robot, gait, SERVOS);
+        let movement_of =
+            |variation: &Variation| variation.simulate_cycle(&self.robot, gait, SERVO_MODEL);
         let speed_of = |variation: &Variation| self.goal.progress(&movement_of(variation)) / period;
-        self.robots.iter().map(speed_of).collect()
+        self.variations.iter().map(speed_of).collect()
     }
 
     /// Computes the speed of a gait on the robot itself, mm/s or deg/s.
     pub fn speed_on_robot(&self, gait: &CheckedGait, period: f64) -> f64 {
-        self.goal.progress(&self.cycle_by_frames(gait)) / period
+        self.goal.progress(&self.simulate_cycle_by_frames(gait)) / period
     }
 
     /// The goal towards which gaits are scored.
@@ -144,25 +153,25 @@ impl Judge {
     }
 
     /// Simulates a cycle on the robot itself in fine steps, with ideal servos.
-    pub fn cycle(&self, gait: &CheckedGait) -> Travel {
+    pub fn simulate_ideal_cycle(&self, gait: &CheckedGait) -> Travel {
         gait.simulate_cycle(&self.ground).travel
     }
 
-    /// Simulates a cycle on the robot itself frame by frame, with the servos [`SERVOS`].
-    fn cycle_by_frames(&self, gait: &CheckedGait) -> Travel {
-        Variation::none(&self.ground).walked(&self.robot, gait, SERVOS)
+    /// Simulates a cycle on the robot itself frame by frame, with the servos [`SERVO_MODEL`].
+    fn simulate_cycle_by_frames(&self, gait: &CheckedGait) -> Travel {
+        Variation::none(&self.ground).simulate_cycle(&self.robot, gait, SERVO_MODEL)
     }
 
-    /// Computes the speed that 95 % of the robots exceed. `None` for a gait that does not move straight towards its
-    /// goal on the robot itself.
+    /// Computes the speed that the gait exceeds on 95 % of the random robots. `None` if the gait's movement on the
+    /// robot itself has another component than the goal's.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // A simulation by frames would miss the end of a cycle whose period is not a whole number of frames, and so
-        // show a movement to the side. So the direction is checked in fine steps.
-        if !self.goal.is_true_to(&self.cycle(gait)) {
+        // show a sideways movement. So the direction is checked in fine steps.
+        if !self.goal.is_true_to(&self.simulate_ideal_cycle(gait)) {
             return None;
         }
-        let [slowest] = quantiles(self.speeds(gait, gait.period()), [SLOWEST_SHARE]);
-        Some(slowest)
+        let [score] = quantiles(self.speeds(gait, gait.period()), [SLOWEST_SHARE]);
+        Some(score)
     }
 }
 
@@ -170,59 +179,64 @@ impl Judge {
 mod tests {
     use super::*;
 
-    fn paper() -> Robot {
+    fn paper_robot() -> Robot {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
     }
 
-    fn bars_of(widest: f64, share: f64) -> Bars {
-        let space = Space {
+    fn wave_bars(max_amplitude: f64, amplitude_share: f64) -> Bars {
+        let space = SearchSpace {
             goal: Goal::Ahead(1.0),
-            widest,
+            max_amplitude,
         };
-        planned(Kind::Wave, space, "x", &[0.5, 0.25, share, 0.5])
+        plan_gait(
+            GaitKind::Wave,
+            space,
+            "x",
+            &[0.5, 0.25, amplitude_share, 0.5],
+        )
     }
 
     #[test]
-    fn the_papers_legs_swing_as_wide_as_their_margin_allows() {
+    fn the_legs_of_the_paper_swing_as_wide_as_their_margin_allows() {
         // sin(41.41 deg - amplitude) = 0.3.
-        let widest = BuiltGait::widest(&paper(), Goal::Ahead(1.0), 262.0);
+        let max_amplitude = BuiltGait::find_max_amplitude(&paper_robot(), Goal::Ahead(1.0), 262.0);
         assert!(
-            (widest - (41.41 - 0.3f64.asin().to_degrees())).abs() < 0.4,
-            "{widest}"
+            (max_amplitude - (41.41 - 0.3f64.asin().to_degrees())).abs() < 0.4,
+            "{max_amplitude}"
         );
     }
 
     #[test]
-    fn a_gait_is_as_fast_as_its_servos_may_be() {
-        let robot = paper();
-        let bars = bars_of(45.0, 0.375);
+    fn a_gait_uses_the_servo_speed_that_is_allowed() {
+        let robot = paper_robot();
+        let bars = wave_bars(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {
             let built = BuiltGait::of(&robot, &bars, rate).expect("it walks");
             assert!(
-                built.peak() <= rate && built.peak() > 0.97 * rate,
+                built.peak_rate() <= rate && built.peak_rate() > 0.97 * rate,
                 "{rate} {}",
-                built.peak()
+                built.peak_rate()
             );
         }
     }
 
     #[test]
     fn a_gait_beyond_a_limit_is_not_built() {
-        // At 45 deg in both directions, the margins of the legs are smaller than their limit.
-        let wide_bars = bars_of(45.0, 1.0);
-        assert!(BuiltGait::of(&paper(), &wide_bars, 250.0).is_none());
+        // At 45 deg in both directions, the margins of the legs are below their limit.
+        let wide_bars = wave_bars(45.0, 1.0);
+        assert!(BuiltGait::of(&paper_robot(), &wide_bars, 250.0).is_none());
     }
 
     #[test]
-    fn walk_and_left_score_as_they_are_predicted() {
-        let robot = paper();
+    fn walk_and_left_score_below_their_speed_on_the_robot_itself() {
+        let robot = paper_robot();
         for (name, goal, min_score) in [
             ("walk", Goal::Ahead(1.0), 28.0),
             ("left", Goal::Turn(1.0), 13.0),
         ] {
             let gait = robot.gait(name).expect(name);
             let judge = Judge::new(&robot, robot.ground(), goal, 20, 0);
-            let score = judge.score(gait).expect("it leads there");
+            let score = judge.score(gait).expect("it moves towards its goal");
             let robot_speed = judge.speed_on_robot(gait, gait.period());
             assert!(
                 min_score < score && score < robot_speed,

@@ -1,6 +1,6 @@
 //! Differential evolution (R. Storn, K. Price, *Journal of Global Optimization* 11, 1997), with steps towards one
 //! of the best members (J. Zhang, A. Sanderson, *IEEE Transactions on Evolutionary Computation* 13, 2009). The
-//! method needs no gradient, copes with refused trials, and its code is a page long.
+//! method needs no gradient, accepts refused trials, and is short.
 //!
 //! The search does not compute scores: its caller takes the trials of a round, scores them in any order, and
 //! returns the scores. Random numbers come from one seed in a fixed order, so the same seed finds the same gait on
@@ -9,19 +9,19 @@
 use fastrand::Rng;
 
 /// Number of members of the population.
-const MEMBERS: usize = 20;
-/// Number of best members, the leaders. Each trial moves towards a leader drawn at random, so that the search does
-/// not end at the first local maximum.
-const LEADERS: usize = 5;
+const MEMBER_COUNT: usize = 20;
+/// Number of best members that count as leaders. Each trial moves towards a random leader, so that the search does not
+/// end at the first local maximum.
+const LEADER_COUNT: usize = 5;
 /// Probability with which a trial changes a parameter of its member.
 const CHANGE_PROBABILITY: f64 = 0.9;
-/// Bounds of the factor on the steps of a trial; each trial draws the factor uniformly.
-const STEPS: (f64, f64) = (0.4, 0.9);
+/// Range of the factor on the steps of a trial; each trial draws its factor uniformly.
+const STEP_RANGE: (f64, f64) = (0.4, 0.9);
 
 /// Returns the number of trials of a [`Search`] with this number of rounds, including the first population, which
 /// is scored before the first round.
-pub const fn trials(rounds: usize) -> usize {
-    MEMBERS * (rounds + 1)
+pub const fn trial_count(rounds: usize) -> usize {
+    MEMBER_COUNT * (rounds + 1)
 }
 
 /// A member of the population.
@@ -42,12 +42,12 @@ pub struct Search {
 }
 
 impl Search {
-    /// Starts a search with these parameter sets, and as many random ones as complete the population.
-    pub fn new(start: &[Vec<f64>], seed: u64) -> Self {
+    /// Starts a search with these parameter sets, and with random sets that complete the population.
+    pub fn new(start_parameters: &[Vec<f64>], seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
-        let parameter_count = start.first().map_or(0, Vec::len);
-        let mut trials = start.to_vec();
-        trials.resize_with(MEMBERS, || {
+        let parameter_count = start_parameters.first().map_or(0, Vec::len);
+        let mut trials = start_parameters.to_vec();
+        trials.resize_with(MEMBER_COUNT, || {
             (0..parameter_count).map(|_| rng.f64()).collect()
         });
         Self {
@@ -64,7 +64,7 @@ impl Search {
 
     /// Takes the scores of this round's trials, in the order of [`Search::trials`], and makes the trials of the next
     /// round. A trial counts as refused if its score is `None` or missing.
-    pub fn score(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
+    pub fn accept_scores(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
         let scores = scores.into_iter().chain(std::iter::repeat(None));
         let trials = std::mem::take(&mut self.trials).into_iter().zip(scores);
         let scored_members = trials.map(|(parameters, score)| Member { parameters, score });
@@ -82,8 +82,8 @@ impl Search {
         self.trials = (0..self.members.len()).map(trial_of).collect();
     }
 
-    /// The scores and parameters found so far, the best first.
-    pub fn found(&self) -> Vec<(f64, Vec<f64>)> {
+    /// The scores and parameters of the present members, the best first.
+    pub fn ranked_results(&self) -> Vec<(f64, Vec<f64>)> {
         let members = self.members.iter();
         let scored = members.filter_map(|member| Some((member.score?, member.parameters.clone())));
         let mut scored: Vec<_> = scored.collect();
@@ -101,13 +101,13 @@ fn score_of(member: &Member) -> f64 {
 /// moves halfway to the bound instead.
 fn make_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
     let own_parameters = &members[index].parameters;
-    let mut ranks: Vec<&Member> = members.iter().collect();
-    ranks.sort_by(|a, b| score_of(b).total_cmp(&score_of(a)));
-    let leader = ranks[rng.usize(..LEADERS)];
+    let mut ranked_members: Vec<&Member> = members.iter().collect();
+    ranked_members.sort_by(|a, b| score_of(b).total_cmp(&score_of(a)));
+    let leader = ranked_members[rng.usize(..LEADER_COUNT)];
     let mut others: Vec<usize> = (0..members.len()).filter(|i| *i != index).collect();
     rng.shuffle(&mut others);
     let [plus, minus] = [0, 1].map(|i| &members[others[i]].parameters);
-    let step = STEPS.0 + (STEPS.1 - STEPS.0) * rng.f64();
+    let step_factor = STEP_RANGE.0 + (STEP_RANGE.1 - STEP_RANGE.0) * rng.f64();
     let changed_index = rng.usize(..own_parameters.len());
     (0..own_parameters.len())
         .map(|i| {
@@ -115,7 +115,7 @@ fn make_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
                 return own_parameters[i];
             }
             match own_parameters[i]
-                + step * (leader.parameters[i] - own_parameters[i] + plus[i] - minus[i])
+                + step_factor * (leader.parameters[i] - own_parameters[i] + plus[i] - minus[i])
             {
                 low if low < 0.0 => own_parameters[i] / 2.0,
                 high if high > 1.0 => (1.0 + own_parameters[i]) / 2.0,
@@ -129,9 +129,9 @@ fn make_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Computes a score with a narrow curved ridge and its maximum at (0.7, 0.49); refuses parameters with x + y up
-    /// to 0.5.
-    fn ridge(parameters: &[f64]) -> Option<f64> {
+    /// Computes a score with a narrow curved ridge and its maximum at (0.7, 0.49). Refuses parameters with x + y up to
+    /// 0.5.
+    fn ridge_score(parameters: &[f64]) -> Option<f64> {
         let (x, y) = (parameters[0], parameters[1]);
         let error = 40.0 * (y - x * x).powi(2) + (x - 0.7).powi(2);
         (x + y > 0.5).then_some(-error)
@@ -141,19 +141,23 @@ mod tests {
         start: &[Vec<f64>],
         rounds: usize,
         seed: u64,
-        judge: impl Fn(&[f64]) -> Option<f64>,
+        score_of_parameters: impl Fn(&[f64]) -> Option<f64>,
     ) -> Vec<(f64, Vec<f64>)> {
         let mut search = Search::new(start, seed);
         for _ in 0..=rounds {
             let trials = search.trials().to_vec();
-            search.score(trials.iter().map(|parameters| judge(parameters)));
+            search.accept_scores(
+                trials
+                    .iter()
+                    .map(|parameters| score_of_parameters(parameters)),
+            );
         }
-        search.found()
+        search.ranked_results()
     }
 
     #[test]
     fn the_search_climbs_a_curved_ridge() {
-        let results = run_search(&[vec![0.1, 0.9]], 60, 1, ridge);
+        let results = run_search(&[vec![0.1, 0.9]], 60, 1, ridge_score);
         let best = &results[0].1;
         let error = (best[0] - 0.7).hypot(best[1] - 0.49);
         assert!(error < 1e-3, "{best:?}");
@@ -161,21 +165,25 @@ mod tests {
     }
 
     #[test]
-    fn a_seed_finds_the_same_every_time() {
-        let best_of_seed = |seed| run_search(&[vec![0.1, 0.9]], 5, seed, ridge)[0].1.clone();
+    fn the_same_seed_finds_the_same_parameters() {
+        let best_of_seed = |seed| {
+            run_search(&[vec![0.1, 0.9]], 5, seed, ridge_score)[0]
+                .1
+                .clone()
+        };
         assert_eq!(best_of_seed(7), best_of_seed(7));
         assert_ne!(best_of_seed(7), best_of_seed(8));
     }
 
     #[test]
-    fn if_all_trials_are_refused_nothing_is_found() {
+    fn refused_trials_are_not_among_the_results() {
         assert_eq!(run_search(&[vec![0.5; 3]], 2, 1, |_| None), []);
         let mut search = Search::new(&[vec![0.5; 3]], 1);
-        search.score([Some(1.0)]);
+        search.accept_scores([Some(1.0)]);
         assert_eq!(
-            search.found(),
+            search.ranked_results(),
             [(1.0, vec![0.5; 3])],
-            "the rest was left out"
+            "the trials without a score count as refused"
         );
     }
 
@@ -186,6 +194,6 @@ mod tests {
             calls.set(calls.get() + 1);
             Some(0.0)
         });
-        assert_eq!(calls.get(), trials(3));
+        assert_eq!(calls.get(), trial_count(3));
     }
 }

@@ -1,44 +1,43 @@
-//! Random robots and floors: they vary within the uncertainty of printed parts, a floor and a kitchen scale.
+//! Random robots and floors, within the uncertainty of printed parts, of a floor and of a kitchen scale.
 
 use fastrand::Rng;
 use lizard_robot::{
     Body, CheckedGait, Drive, DriveKind, Feet, Ground, Robot, Stance, Strut, Travel, Walker,
 };
-use lizard_twin::{FRAME, ServoModel};
+use lizard_twin::{FRAME_S, ServoModel};
 
 /// Number of phases in a cycle.
-const PHASES: f64 = 65536.0;
+const PHASES_PER_CYCLE: f64 = 65536.0;
 
-/// Range of the random factor on robot.toml's friction. The following constants are also ranges of factors if they
-/// have two values, and else largest deviations in mm or deg.
-pub const FRICTION: (f64, f64) = (0.5, 1.5);
-const PADS: (f64, f64) = (0.9, 1.1);
-const CENTRE: f64 = 8.0;
-const MOUNT: f64 = 4.0;
-const HIPS: f64 = 2.0;
-const SPRING: (f64, f64) = (0.8, 1.2);
-/// Range of the factor on the stiffness of the feet's leaves. Stiffness grows with the cube of a leaf's thickness,
-/// which a print keeps within a fifteenth.
-const LEAF: (f64, f64) = (0.8, 1.25);
+/// Range of the random factor on the friction of robot.toml.
+pub const FRICTION_FACTORS: (f64, f64) = (0.5, 1.5);
+const PAD_FACTORS: (f64, f64) = (0.9, 1.1);
+const MAX_CENTRE_SHIFT_MM: f64 = 8.0;
+const MAX_MOUNT_SHIFT_DEG: f64 = 4.0;
+const MAX_HIP_SHIFT_MM: f64 = 2.0;
+const SPRING_FACTORS: (f64, f64) = (0.8, 1.2);
+/// Range of the factor on the stiffness of the feet's leaves. Stiffness grows with the cube of the thickness, which a
+/// print keeps within a fifteenth.
+const LEAF_FACTORS: (f64, f64) = (0.8, 1.25);
 /// Largest random play that is added to the play of the legs, deg.
-const PLAY: f64 = 1.0;
+const MAX_ADDED_PLAY_DEG: f64 = 1.0;
 
 /// Description of the ranges in which the random robots vary, for reports.
-pub const SPREAD: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
+pub const SPREAD_TEXT: &str = "friction x 0.5 to 1.5, each pad's x 0.9 to 1.1, backward over forward x 0.9 to 1.1, mass centre +-8 mm,\n\
 mounting +-4 deg, hips +-2 mm, springs x 0.8 to 1.2, leaves of feet x 0.8 to 1.25, a foot longer by\n\
 -1 to 1 times what [feet] level says";
 
 /// Description of the play that [`Variation::with_play`] adds, for reports.
-pub const PLAY_SPREAD: &str = "play of the legs 0 to 1 deg more";
+pub const PLAY_SPREAD_TEXT: &str = "play of the legs 0 to 1 deg more";
 
 /// A robot and a floor that differ randomly from the robot and the floor of robot.toml.
 #[derive(Debug, Clone, Copy)]
 pub struct Variation {
     ground: Ground,
     /// Factor on the load of each pad.
-    pads: [f64; 4],
+    pad_factors: [f64; 4],
     /// Factor on the ground's ratio of backward to forward friction.
-    ratio: f64,
+    ratio_factor: f64,
 }
 
 impl Variation {
@@ -49,28 +48,28 @@ impl Variation {
         let feet = ground.feet;
         let ground = Ground {
             feet: Feet {
-                mount_angle: feet.mount_angle + draw_within((-MOUNT, MOUNT)),
-                hip_forward: feet.hip_forward + draw_within((-HIPS, HIPS)),
+                mount_angle: feet.mount_angle
+                    + draw_within((-MAX_MOUNT_SHIFT_DEG, MAX_MOUNT_SHIFT_DEG)),
+                hip_forward: feet.hip_forward + draw_within((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM)),
                 hip_side: {
-                    let shift = draw_within((-HIPS, HIPS));
+                    let shift = draw_within((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
                     feet.hip_side.map(|side| side + shift)
                 },
                 ..feet
             },
             body: Body {
-                mass_centre: ground
-                    .body
-                    .mass_centre
-                    .map(|position| position + draw_within((-CENTRE, CENTRE))),
+                mass_centre: ground.body.mass_centre.map(|position| {
+                    position + draw_within((-MAX_CENTRE_SHIFT_MM, MAX_CENTRE_SHIFT_MM))
+                }),
                 ..ground.body
             },
-            friction_coefficient: ground.friction_coefficient * draw_within(FRICTION),
+            friction_coefficient: ground.friction_coefficient * draw_within(FRICTION_FACTORS),
             drive: Drive {
                 kind: match ground.drive.kind {
                     DriveKind::Rigid => DriveKind::Rigid,
                     DriveKind::Strut(strut) => DriveKind::Strut(Strut {
-                        force: strut.force * draw_within(SPRING),
-                        rate: strut.rate * draw_within(SPRING),
+                        force: strut.force * draw_within(SPRING_FACTORS),
+                        rate: strut.rate * draw_within(SPRING_FACTORS),
                         ..strut
                     }),
                 },
@@ -78,28 +77,28 @@ impl Variation {
             },
             ..*ground
         };
-        let (pads, ratio) = (
-            std::array::from_fn(|_| draw_within(PADS)),
-            draw_within(PADS),
+        let (pad_factors, ratio_factor) = (
+            std::array::from_fn(|_| draw_within(PAD_FACTORS)),
+            draw_within(PAD_FACTORS),
         );
         let stance = Stance {
-            stiffness: ground.stance.stiffness * draw_within(LEAF),
+            stiffness: ground.stance.stiffness * draw_within(LEAF_FACTORS),
             twist: ground.stance.twist + ground.stance.twist_error * draw_within((-1.0, 1.0)),
             ..ground.stance
         };
         Self {
             ground: Ground { stance, ..ground },
-            pads,
-            ratio,
+            pad_factors,
+            ratio_factor,
         }
     }
 
-    /// Adds random play to the legs. Walking then takes longer to compute.
+    /// Adds random play to the legs. The simulation then takes longer.
     #[must_use]
     pub fn with_play(mut self, seed: u64) -> Self {
-        // Play has its own random sequence, so that all other values are those of the robot without added play.
+        // A separate random sequence for the play leaves all other values unchanged.
         let mut rng = Rng::with_seed(seed ^ 0x9E37_79B9_7F4A_7C15);
-        self.ground.drive.play += PLAY * rng.f64();
+        self.ground.drive.play += MAX_ADDED_PLAY_DEG * rng.f64();
         self
     }
 
@@ -107,22 +106,23 @@ impl Variation {
     pub fn none(ground: &Ground) -> Self {
         Self {
             ground: *ground,
-            pads: [1.0; 4],
-            ratio: 1.0,
+            pad_factors: [1.0; 4],
+            ratio_factor: 1.0,
         }
     }
 
-    /// Simulates two cycles of a gait frame by frame with these servos, and returns the movement in the second. All
-    /// later cycles repeat the second.
-    pub fn walked(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
+    /// Simulates two cycles of a gait frame by frame with these servos, and returns the movement in the second cycle.
+    /// All later cycles repeat the second one.
+    pub fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, model: ServoModel) -> Travel {
         let mut sweeps = gait.sweeps(gait.phase_at(0.0));
-        let targets_at = |phase: u16| gait.sweeps(f64::from(phase) / PHASES);
+        let targets_at = |phase: u16| gait.sweeps(f64::from(phase) / PHASES_PER_CYCLE);
         if let ServoModel::Motors(motors) = model {
-            let mut walker = Walker::with_unevenness(self.ground, sweeps, self.pads, self.ratio);
+            let mut walker =
+                Walker::with_unevenness(self.ground, sweeps, self.pad_factors, self.ratio_factor);
             let mut run_cycle = || {
                 let start_place = walker.place();
                 for (_, phase) in gait.frames().skip(1) {
-                    walker.drive(targets_at(phase).map(Some), FRAME, &motors);
+                    walker.drive(targets_at(phase).map(Some), FRAME_S, &motors);
                 }
                 walker.place().travel_from(start_place)
             };
@@ -140,13 +140,18 @@ impl Variation {
             sweeps
         };
         let first_cycle: Vec<[f64; 4]> = gait.frames().map(|(_, phase)| advance(phase)).collect();
-        let [start, end] =
+        let [start_pose, end_pose] =
             [first_cycle.first(), first_cycle.last()].map(|pose| pose.copied().unwrap_or_default());
-        // Rigid legs keep nothing from the first cycle, so only the servos need to run through it.
-        let can_lag = self.ground.drive.can_lag();
-        let start_sweeps = if can_lag { start } else { end };
-        let mut walker = Walker::with_unevenness(self.ground, start_sweeps, self.pads, self.ratio);
-        if can_lag {
+        // The first cycle has no effect on rigid legs, so only the servos are simulated in it.
+        let legs_can_lag = self.ground.drive.can_lag();
+        let start_sweeps = if legs_can_lag { start_pose } else { end_pose };
+        let mut walker = Walker::with_unevenness(
+            self.ground,
+            start_sweeps,
+            self.pad_factors,
+            self.ratio_factor,
+        );
+        if legs_can_lag {
             first_cycle.into_iter().for_each(|sweeps| {
                 walker.move_to(sweeps);
             });
@@ -159,7 +164,7 @@ impl Variation {
     }
 }
 
-/// Returns the values below which these shares of all values lie, by nearest rank; NaN if there are no values.
+/// Quantiles: the values below which these shares of all values lie, by nearest rank; NaN if there are no values.
 pub fn quantiles<const N: usize>(mut values: Vec<f64>, shares: [f64; N]) -> [f64; N] {
     values.sort_by(f64::total_cmp);
     let last_index = values.len().saturating_sub(1);
@@ -176,11 +181,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn walk_goes_ahead_on_nearly_every_robot_and_floor() {
+    fn walk_moves_forward_on_nearly_every_robot_and_floor() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         let walk = robot.gait("walk").expect("walk");
         let movements: Vec<Travel> = (0..40)
-            .map(|seed| Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90))
+            .map(|seed| {
+                Variation::of(robot.ground(), seed).simulate_cycle(&robot, walk, ServoModel::SG90)
+            })
             .collect();
         let quantiles_of = |component: fn(&Travel) -> f64| {
             quantiles(movements.iter().map(component).collect(), [0.05, 0.5, 0.95])
@@ -192,13 +199,13 @@ mod tests {
     }
 
     #[test]
-    fn soft_feet_leave_a_walk_where_stiff_ones_lose_it() {
+    fn uneven_feet_slow_a_walk_only_if_they_are_stiff() {
         let text = include_str!("../../../robots/paper.toml");
         let low_forward = |feet: &str| {
             let robot = Robot::parse(&format!("{text}\n{feet}")).expect("right");
             let walk = robot.gait("walk").expect("walk");
             let movements = (0..60).map(|seed| {
-                Variation::of(robot.ground(), seed).walked(&robot, walk, ServoModel::SG90)
+                Variation::of(robot.ground(), seed).simulate_cycle(&robot, walk, ServoModel::SG90)
             });
             let [min] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
             min
@@ -211,21 +218,24 @@ mod tests {
     }
 
     #[test]
-    fn play_is_added_to_the_same_robots() {
+    fn added_play_changes_nothing_else_of_a_robot() {
         let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
         for seed in 0..50 {
             let plain = Variation::of(robot.ground(), seed);
-            let played = plain.with_play(seed);
-            let play = played.ground.drive.play;
-            assert!((0.0..=PLAY).contains(&play) && play > 0.0, "{play}");
-            let mut without_play = played;
+            let with_play = plain.with_play(seed);
+            let play = with_play.ground.drive.play;
+            assert!(
+                (0.0..=MAX_ADDED_PLAY_DEG).contains(&play) && play > 0.0,
+                "{play}"
+            );
+            let mut without_play = with_play;
             without_play.ground.drive.play = 0.0;
             assert_eq!(without_play.ground, plain.ground);
         }
     }
 
     #[test]
-    fn without_variation_it_walks_as_the_twin_does() {
+    fn a_robot_without_variation_walks_like_the_twin() {
         let text = include_str!("../../../robots/paper.toml");
         let text_with_springs = text.replace(
             "[leg]",
@@ -236,8 +246,9 @@ mod tests {
             for name in ["walk", "left"] {
                 let gait = robot.gait(name).expect(name);
                 for model in [ServoModel::Ideal, ServoModel::SG90] {
-                    let movement = Variation::none(robot.ground()).walked(&robot, gait, model);
-                    let twin = Twin::new(&robot, model).cycle(gait).travel();
+                    let movement =
+                        Variation::none(robot.ground()).simulate_cycle(&robot, gait, model);
+                    let twin = Twin::new(&robot, model).simulate_cycle(gait).travel();
                     let error = (movement.forward - twin.forward).hypot(movement.turn - twin.turn);
                     // The twin reads the firmware's tables of 64 samples; the variation computes the gait itself.
                     assert!(error < 0.4, "{name} {movement:?} {twin:?}");
@@ -247,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_share_is_below_each_quantile() {
+    fn the_given_share_of_the_values_is_below_each_quantile() {
         let values = (0..=100).rev().map(f64::from).collect();
         assert_eq!(quantiles(values, [0.05, 0.5, 0.95]), [5.0, 50.0, 95.0]);
     }

@@ -1,7 +1,7 @@
 //! Simulated twin of the robot: the movement of body, legs and feet that a board's servo pulses cause.
 //!
 //! The four pulses of a frame set the targets of the servos ([`ServoModel`]), the servos turn the linkage, struts or
-//! springs pull the legs along, and the contact model (`lizard_contact`) computes the movement of the body over the
+//! springs pull the legs, and the contact model (`lizard_contact`) computes the movement of the body over the
 //! floor. [`Twin::push`] takes one frame and returns the result as a [`State`]. The crate reads, stores and prints
 //! nothing, so a program, a test and a web page can use it.
 //!
@@ -22,11 +22,11 @@ mod state;
 mod tally;
 mod twin;
 
-pub use servo::{ServoModel, Unloaded};
+pub use servo::{ServoModel, UnloadedServo};
 pub use shape::Shape;
 pub use state::State;
 pub use tally::Tally;
 pub use twin::Twin;
 
 /// Time from one frame to the next, s.
-pub const FRAME: f64 = 1.0 / lizard_robot::FRAMES_PER_SECOND;
+pub const FRAME_S: f64 = 1.0 / lizard_robot::FRAMES_PER_SECOND;

@@ -1,9 +1,9 @@
-//! A hobby servo: a motor with limited torque and rate that turns towards the angle of its pulse,
-//! and stops when the error is inside the dead band.
+//! A hobby servo: a motor with limited torque and rate that turns towards the angle of its pulse, and stops when the
+//! error is inside the dead band.
 
 use lizard_robot::{Motors, Robot};
 
-use crate::FRAME;
+use crate::FRAME_S;
 
 /// A model of the servos.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,16 +14,16 @@ use crate::FRAME;
 pub enum ServoModel {
     /// Servos that follow their pulses at once and exactly.
     Ideal,
-    /// Servos with a largest rate and a dead band, both independent of their load. A search uses these servos
-    /// because they take a fraction of the computing time of [`ServoModel::Motors`].
-    Unloaded(Unloaded),
-    /// Servos with motors of limited torque and rate, with a rotor, loaded by the pads' friction.
+    /// Servos with a largest rate and a dead band, both independent of their load. They take a fraction of the
+    /// computing time of [`ServoModel::Motors`].
+    Unloaded(UnloadedServo),
+    /// Servos with motors of limited torque and rate and with inertia, loaded by the pads' friction.
     Motors(Motors),
 }
 
 /// The rate and the dead band of a servo without a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unloaded {
+pub struct UnloadedServo {
     /// Largest rate of turn, deg/s.
     pub rate: f64,
     /// Width of the dead band, us: a servo ignores an error of up to half of it.
@@ -32,7 +32,7 @@ pub struct Unloaded {
 
 impl ServoModel {
     /// An SG-90 without a load: 60 degrees in 0.12 s, dead band 10 us (data sheet).
-    pub const SG90: Self = Self::Unloaded(Unloaded {
+    pub const SG90: Self = Self::Unloaded(UnloadedServo {
         rate: 500.0,
         dead_band: 10.0,
     });
@@ -43,12 +43,12 @@ impl ServoModel {
     }
 }
 
-impl Unloaded {
+impl UnloadedServo {
     /// Computes the sweep at the end of a frame that begins at the sweep `start` with a pulse for the sweep `target`,
     /// all in deg; `us_per_degree` is the servo's gain.
     pub fn sweep_after_frame(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
         let half_band = self.dead_band / 2.0 / us_per_degree.abs();
-        let max_step = self.rate * FRAME;
+        let max_step = self.rate * FRAME_S;
         let end = start.clamp(target - half_band, target + half_band);
         start + (end - start).clamp(-max_step, max_step)
     }
@@ -58,14 +58,14 @@ impl Unloaded {
 mod tests {
     use super::*;
 
-    const SG90: Unloaded = Unloaded {
+    const SG90: UnloadedServo = UnloadedServo {
         rate: 500.0,
         dead_band: 10.0,
     };
 
     #[test]
-    fn it_turns_no_faster_than_it_can() {
-        let servo = Unloaded {
+    fn a_servo_turns_no_faster_than_its_largest_rate() {
+        let servo = UnloadedServo {
             dead_band: 0.0,
             ..SG90
         };
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn inside_its_dead_band_it_does_not_turn() {
+    fn a_servo_does_not_turn_inside_its_dead_band() {
         let sweep_after_frame = |from, target| SG90.sweep_after_frame(from, target, -10.0);
         assert_eq!(sweep_after_frame(3.0, 3.5), 3.0);
         assert_eq!(sweep_after_frame(3.0, 4.0), 3.5, "it stops at the edge");

@@ -4,15 +4,15 @@ use lizard_contact::FORWARD_TURN_SIGN;
 use lizard_kinematics::{End, Side, Solution, Vector};
 use lizard_robot::{LegPlace, Robot};
 
-/// The positions of a robot's joints, mm, chassis frame.
+/// The positions of a robot's joints, mm, in the chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// Shafts of the servos.
     pub shafts: [Vector; 4],
     /// Tips of the cranks of the head and tail five-bars.
-    pub tips: [Vector; 4],
+    pub crank_tips: [Vector; 4],
     /// Tips of the arms that carry the sliders.
-    pub arms: [Vector; 4],
+    pub arm_tips: [Vector; 4],
     /// End points of head and tail, the joints between their two couplers.
     pub ends: [Vector; 2],
     /// The legs, which may lag behind their servos.
@@ -30,19 +30,19 @@ impl Shape {
     /// Computes the joints of a solved pose, with legs at these sweeps from neutral (deg, foot forward positive).
     pub fn at_solution(robot: &Robot, solution: &Solution, legs: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
-        let tips = solution.crank_tips();
+        let crank_tips = solution.crank_tips();
         let angles: [f64; 4] = solution.pose.into();
-        let mut arms = shafts;
+        let mut arm_tips = shafts;
         for side in Side::ALL {
             let [front, rear] = side.servos();
             let slider = solution.side(side);
-            arms[front] = shafts[rear] + slider.front_tip;
-            arms[rear] = shafts[rear] + slider.rear_tip;
+            arm_tips[front] = shafts[rear] + slider.front_tip;
+            arm_tips[rear] = shafts[rear] + slider.rear_tip;
         }
         Self {
             shafts,
-            tips,
-            arms,
+            crank_tips,
+            arm_tips,
             ends: End::ALL.map(|end| solution.point(end)),
             legs: std::array::from_fn(|i| {
                 let leg_angle = robot.servos()[i].neutral + FORWARD_TURN_SIGN[i] * legs[i];
@@ -56,23 +56,23 @@ impl Shape {
 mod tests {
     use super::*;
 
-    fn paper() -> Robot {
+    fn paper_robot() -> Robot {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
     }
 
-    fn shape(robot: &Robot, legs: [f64; 4]) -> Shape {
+    fn neutral_shape(robot: &Robot, legs: [f64; 4]) -> Shape {
         Shape::of(robot, robot.neutral_pose().into(), legs).expect("neutral closes")
     }
 
     #[test]
     fn every_link_has_its_length() {
-        let robot = paper();
-        let shape = shape(&robot, [20.0, -10.0, 5.0, 0.0]);
+        let robot = paper_robot();
+        let shape = neutral_shape(&robot, [20.0, -10.0, 5.0, 0.0]);
         let distance = |a: Vector, b: Vector| (a - b).length();
         for (i, leg) in shape.legs.iter().enumerate() {
-            assert!((distance(shape.shafts[i], shape.tips[i]) - 30.0).abs() < 1e-9);
-            assert!((distance(shape.shafts[i], shape.arms[i]) - 30.0).abs() < 1e-9);
-            assert!((distance(shape.tips[i], shape.ends[i / 2]) - 50.0).abs() < 1e-9);
+            assert!((distance(shape.shafts[i], shape.crank_tips[i]) - 30.0).abs() < 1e-9);
+            assert!((distance(shape.shafts[i], shape.arm_tips[i]) - 30.0).abs() < 1e-9);
+            assert!((distance(shape.crank_tips[i], shape.ends[i / 2]) - 50.0).abs() < 1e-9);
             assert!((distance(leg.pivots[0], leg.pivots[1]) - 50.0).abs() < 1e-9);
             assert!((distance(leg.joints[0], leg.joints[1]) - 50.0).abs() < 1e-9);
             assert!((distance(leg.pivots[0], leg.joints[0]) - 45.0).abs() < 1e-9);
@@ -81,11 +81,12 @@ mod tests {
     }
 
     #[test]
-    fn a_leg_that_lags_leaves_its_servo_and_opens_its_strut() {
-        let robot = paper();
+    fn a_leg_that_lags_behind_its_servo_stretches_its_strut() {
+        let robot = paper_robot();
         let strut_length_of =
             |leg: LegPlace| (leg.strut_anchors[1] - leg.strut_anchors[0]).length();
-        let [rigid_shape, lagging_shape] = [[0.0; 4], [6.0; 4]].map(|legs| shape(&robot, legs));
+        let [rigid_shape, lagging_shape] =
+            [[0.0; 4], [6.0; 4]].map(|legs| neutral_shape(&robot, legs));
         for i in 0..4 {
             let (rigid_leg, lagging_leg) = (rigid_shape.legs[i], lagging_shape.legs[i]);
             assert_eq!(rigid_leg.pivots, lagging_leg.pivots);
@@ -104,15 +105,15 @@ mod tests {
 
     #[test]
     fn at_neutral_each_foot_is_straight_beside_its_hip() {
-        let robot = paper();
-        let feet = shape(&robot, [0.0; 4]).legs.map(|leg| leg.foot);
+        let robot = paper_robot();
+        let feet = neutral_shape(&robot, [0.0; 4]).legs.map(|leg| leg.foot);
         for (foot, (x, y)) in
             feet.into_iter()
                 .zip([(-80.0, 55.0), (80.0, 55.0), (80.0, -55.0), (-80.0, -55.0)])
         {
             assert!((foot - Vector::new(x, y)).length() < 1e-9, "{foot:?}");
         }
-        for (foot, leg) in feet.into_iter().zip(shape(&robot, [10.0; 4]).legs) {
+        for (foot, leg) in feet.into_iter().zip(neutral_shape(&robot, [10.0; 4]).legs) {
             assert!(leg.foot.y > foot.y + 7.0, "forward");
         }
     }

@@ -1,4 +1,4 @@
-//! The state of the robot after a frame, as the twin reports it.
+//! The twin's report of a frame.
 
 use lizard_contact::Place;
 use lizard_kinematics::{Check, Margins};
@@ -9,7 +9,7 @@ pub struct State {
     /// Number of the frame, counted from 1.
     pub frame: u64,
     /// True for each servo that had a pulse in this frame.
-    pub pulsed: [bool; 4],
+    pub has_pulse: [bool; 4],
     /// Position and heading of the body on the floor.
     pub place: Place,
     /// Actual servo angles, deg, chassis frame.
@@ -19,11 +19,11 @@ pub struct State {
     /// Pulse angles minus actual angles of the servos, deg.
     pub errors: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive.
-    pub lag: [f64; 4],
+    pub lags: [f64; 4],
     /// Positions of the feet on the floor: (forward, left), mm.
     pub feet: [[f64; 2]; 4],
     /// Distance that each foot slid over the floor in this frame, mm.
-    pub slip: [f64; 4],
+    pub slips: [f64; 4],
     /// Load of each foot, N.
     pub loads: [f64; 4],
     /// Margins of the pose; `None` if the loop of a five-bar or slider does not close.
@@ -35,7 +35,7 @@ pub struct State {
 impl State {
     /// Returns the name and the value of the smallest margin; `None` if the loop of a five-bar or slider does not
     /// close.
-    pub fn least_margin(&self) -> Option<(Check, f64)> {
+    pub fn min_margin(&self) -> Option<(Check, f64)> {
         self.margins.map(|margins| margins.min())
     }
 }

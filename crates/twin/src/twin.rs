@@ -1,10 +1,10 @@
-//! Simulation of a robot that its servo pulses move over a floor, frame by frame.
+//! Simulation of a robot on a floor, frame by frame, from its servo pulses.
 
 use lizard_contact::{FORWARD_TURN_SIGN, Ground, Place, Walker};
 use lizard_kinematics::wrap;
 use lizard_robot::{CheckedGait, Robot};
 
-use crate::FRAME;
+use crate::FRAME_S;
 use crate::servo::ServoModel;
 use crate::shape::Shape;
 use crate::state::State;
@@ -14,11 +14,11 @@ use crate::tally::Tally;
 #[derive(Debug, Clone)]
 pub struct Twin {
     robot: Robot,
-    model: ServoModel,
+    servo_model: ServoModel,
     /// Actual sweeps of the servos from neutral, deg, counter-clockwise positive.
     sweeps: [f64; 4],
     walker: Walker,
-    frame: u64,
+    frame_count: u64,
 }
 
 impl Twin {
@@ -26,42 +26,42 @@ impl Twin {
     pub fn new(robot: &Robot, model: ServoModel) -> Self {
         Self {
             robot: robot.clone(),
-            model,
+            servo_model: model,
             sweeps: [0.0; 4],
             walker: Walker::new(*robot.ground(), [0.0; 4]),
-            frame: 0,
+            frame_count: 0,
         }
     }
 
-    /// Simulates a frame of 20 ms with pulses of these widths in us; `None` for a servo without a pulse, which does
-    /// not turn because its gears hold it.
+    /// Simulates a frame of 20 ms with pulses of these widths, us. `None` is no pulse: the servo does not turn, because
+    /// its gears hold it.
     pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| pulses[i].map(|width| servos[i].sweep(width)));
-        self.turn(targets)
+        self.simulate_frame(targets)
     }
 
     /// Simulates a frame of 20 ms with the pulses for these servo angles: deg, chassis frame.
     pub fn push_angles(&mut self, angles: [f64; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| Some(wrap(angles[i] - servos[i].neutral)));
-        self.turn(targets)
+        self.simulate_frame(targets)
     }
 
     /// Simulates a frame in which the servos turn towards these sweeps from neutral, deg, counter-clockwise
     /// positive; `None` for a servo without a pulse.
-    fn turn(&mut self, targets: [Option<f64>; 4]) -> State {
+    fn simulate_frame(&mut self, targets: [Option<f64>; 4]) -> State {
         let sweeps_before = self.sweeps;
         let servos = self.robot.servos();
         let targets: [Option<f64>; 4] = std::array::from_fn(|i| {
             let (min, max) = servos[i].travel();
             targets[i].map(|target| target.clamp(min, max))
         });
-        let slip = match self.model {
+        let slip = match self.servo_model {
             ServoModel::Motors(motors) => {
                 let forward_targets =
                     std::array::from_fn(|i| targets[i].map(|target| FORWARD_TURN_SIGN[i] * target));
-                let slip = self.walker.drive(forward_targets, FRAME, &motors);
+                let slip = self.walker.drive(forward_targets, FRAME_S, &motors);
                 let servo_sweeps = self.walker.servo_sweeps();
                 self.sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * servo_sweeps[i]);
                 slip
@@ -69,7 +69,7 @@ impl Twin {
             ServoModel::Ideal | ServoModel::Unloaded(_) => {
                 for i in 0..4 {
                     let Some(target) = targets[i] else { continue };
-                    self.sweeps[i] = match self.model {
+                    self.sweeps[i] = match self.servo_model {
                         ServoModel::Unloaded(model) => model.sweep_after_frame(
                             sweeps_before[i],
                             target,
@@ -78,30 +78,30 @@ impl Twin {
                         _ => target,
                     };
                 }
-                self.walker.move_to(self.leg_sweeps())
+                self.walker.move_to(self.unlagged_leg_sweeps())
             }
         };
         let errors =
             std::array::from_fn(|i| targets[i].map_or(0.0, |target| target - self.sweeps[i]));
-        self.frame += 1;
+        self.frame_count += 1;
         let angles = self.angles();
         let solution = self.robot.lizard().solve(&angles.into()).ok();
         let place = self.walker.place();
         let ground = self.walker.ground();
         let mean_load = ground.body.mean_load();
         State {
-            frame: self.frame,
-            pulsed: targets.map(|target| target.is_some()),
+            frame: self.frame_count,
+            has_pulse: targets.map(|target| target.is_some()),
             place,
             angles,
-            rates: std::array::from_fn(|i| (self.sweeps[i] - sweeps_before[i]) / FRAME),
+            rates: std::array::from_fn(|i| (self.sweeps[i] - sweeps_before[i]) / FRAME_S),
             errors,
-            lag: self.walker.lags(),
+            lags: self.walker.lags(),
             feet: ground
                 .feet
                 .positions(self.walker.leg_sweeps())
                 .map(|foot| place.to_floor(foot)),
-            slip: slip.slid_distances,
+            slips: slip.slid_distances,
             loads: slip.loads.map(|share| share * mean_load),
             margins: solution.map(|solution| solution.margins),
             strokes: solution.map(|solution| [solution.left.s, solution.right.s]),
@@ -115,7 +115,7 @@ impl Twin {
 
     /// The present positions of the joints, chassis frame; `None` if the loop of a five-bar or slider does not close.
     pub fn shape(&self) -> Option<Shape> {
-        Shape::of(&self.robot, self.angles(), self.legs())
+        Shape::of(&self.robot, self.angles(), self.leg_sweeps())
     }
 
     /// The present servo angles, deg, chassis frame.
@@ -124,7 +124,7 @@ impl Twin {
     }
 
     /// The present sweeps of the legs, deg, foot forward positive. A leg may lag behind its servo.
-    pub fn legs(&self) -> [f64; 4] {
+    pub fn leg_sweeps(&self) -> [f64; 4] {
         self.walker.leg_sweeps()
     }
 
@@ -140,8 +140,8 @@ impl Twin {
 
     /// Simulates two cycles of a gait at full speed from neutral, with the present ground and servos, and returns
     /// the tally of the second cycle. This twin itself does not move.
-    pub fn cycle(&self, gait: &CheckedGait) -> Tally {
-        let mut twin = Self::new(&self.robot, self.model);
+    pub fn simulate_cycle(&self, gait: &CheckedGait) -> Tally {
+        let mut twin = Self::new(&self.robot, self.servo_model);
         twin.set_ground(*self.ground());
         let mut tally = Tally::new(Place::START);
         for _ in 0..2 {
@@ -154,13 +154,13 @@ impl Twin {
     }
 
     /// The model of the servos.
-    pub fn servos(&self) -> ServoModel {
-        self.model
+    pub fn servo_model(&self) -> ServoModel {
+        self.servo_model
     }
 
     /// Changes the model of the servos from the next frame on.
-    pub fn set_servos(&mut self, model: ServoModel) {
-        self.model = model;
+    pub fn set_servo_model(&mut self, model: ServoModel) {
+        self.servo_model = model;
     }
 
     /// Moves the robot to another place on the floor.
@@ -168,8 +168,8 @@ impl Twin {
         self.walker.set_place(place);
     }
 
-    /// The sweeps that the legs would have without lag, deg, foot forward positive.
-    fn leg_sweeps(&self) -> [f64; 4] {
+    /// The sweeps of the legs if they did not lag, deg, foot forward positive.
+    fn unlagged_leg_sweeps(&self) -> [f64; 4] {
         std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * self.sweeps[i])
     }
 }

@@ -1,41 +1,46 @@
 //! Tests of the twin: the frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
 use lizard_robot::{CheckedGait, Drive, DriveKind, Ground, Place, Robot};
-use lizard_twin::{ServoModel, Tally, Twin, Unloaded};
+use lizard_twin::{ServoModel, Tally, Twin, UnloadedServo};
 
-fn paper() -> Robot {
+fn paper_robot() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
 }
 
 /// Returns the pulse widths of a gait at a phase, from the firmware's table, us.
-fn widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
+fn pulse_widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
 }
 
-/// Simulates four cycles of a gait and returns the tally of the last cycle.
-fn simulate_cycle(robot: &Robot, name: &str, model: ServoModel, ground: &Ground) -> Tally {
+/// Simulates four cycles of a gait, and returns the tally of the last cycle.
+fn simulate_last_of_four_cycles(
+    robot: &Robot,
+    name: &str,
+    model: ServoModel,
+    ground: &Ground,
+) -> Tally {
     let gait = robot.gait(name).expect(name);
     let mut twin = Twin::new(robot, model);
     twin.set_ground(*ground);
     let mut tally = Tally::new(Place::START);
     for _ in 0..4 {
-        let start = twin.push(widths(
+        let start = twin.push(pulse_widths(
             robot,
             gait,
             gait.frames().next().expect("a frame").1,
         ));
         tally = Tally::new(start.place);
         for (_, phase) in gait.frames().skip(1) {
-            tally.add(&twin.push(widths(robot, gait, phase)));
+            tally.add(&twin.push(pulse_widths(robot, gait, phase)));
         }
     }
     tally
 }
 
 #[test]
-fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
-    let robot = paper();
+fn with_ideal_servos_the_robot_moves_as_predicted_for_the_gait() {
+    let robot = paper_robot();
     let ground_with_springs = Ground {
         drive: Drive {
             kind: DriveKind::Strut(robot.strut_with(0.5, 0.4)),
@@ -45,7 +50,8 @@ fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
     };
     for ground in [*robot.ground(), ground_with_springs] {
         for gait in robot.gaits().iter().filter(|gait| gait.name() != "look") {
-            let tally = simulate_cycle(&robot, gait.name(), ServoModel::Ideal, &ground);
+            let tally =
+                simulate_last_of_four_cycles(&robot, gait.name(), ServoModel::Ideal, &ground);
             let (travel, expected) = (tally.travel(), gait.simulate_cycle(&ground).travel);
             let name = gait.name();
             assert!(
@@ -62,10 +68,10 @@ fn ideal_servos_go_where_the_gait_is_predicted_to_go() {
 }
 
 #[test]
-fn a_dead_band_costs_its_share_of_the_stroke() {
-    let robot = paper();
+fn a_dead_band_shortens_the_walk_by_its_share_of_the_stroke() {
+    let robot = paper_robot();
     let walk_forward_with = |model| {
-        simulate_cycle(&robot, "walk", model, robot.ground())
+        simulate_last_of_four_cycles(&robot, "walk", model, robot.ground())
             .travel()
             .forward
     };
@@ -81,27 +87,30 @@ fn a_dead_band_costs_its_share_of_the_stroke() {
 }
 
 #[test]
-fn servos_too_slow_for_a_gait_cut_its_stroke() {
-    let robot = paper();
-    let slow_model = ServoModel::Unloaded(Unloaded {
+fn servos_that_are_too_slow_for_a_gait_shorten_its_stride() {
+    let robot = paper_robot();
+    let slow_model = ServoModel::Unloaded(UnloadedServo {
         rate: 120.0,
         dead_band: 0.0,
     });
-    let tally = simulate_cycle(&robot, "walk", slow_model, robot.ground());
-    assert!(tally.rate <= 120.0 + 1e-9 && tally.error > 5.0, "{tally:?}");
+    let tally = simulate_last_of_four_cycles(&robot, "walk", slow_model, robot.ground());
+    assert!(
+        tally.max_rate <= 120.0 + 1e-9 && tally.max_error > 5.0,
+        "{tally:?}"
+    );
     assert!(tally.travel().forward < 25.0, "{tally:?}");
 }
 
 #[test]
-fn three_feet_hold_while_one_returns() {
-    let robot = paper();
+fn three_feet_do_not_slip_while_one_swings() {
+    let robot = paper_robot();
     let crawl = robot.gait("crawl").expect("crawl");
     let mut twin = Twin::new(&robot, ServoModel::Ideal);
     for (seconds, phase) in crawl.frames() {
-        let state = twin.push(widths(&robot, crawl, phase));
-        // In the middle of the second fifth only the left hind leg moves.
+        let state = twin.push(pulse_widths(&robot, crawl, phase));
+        // In the middle of the second fifth of the cycle, only the left hind leg swings.
         if (0.24..0.36).contains(&seconds) {
-            let is_still = state.slip.map(|mm| mm < 0.01);
+            let is_still = state.slips.map(|mm| mm < 0.01);
             assert_eq!(is_still, [true, true, true, false], "at {seconds}");
         }
     }
@@ -109,28 +118,28 @@ fn three_feet_hold_while_one_returns() {
 
 #[test]
 fn a_robot_without_pulses_stays_where_it_is() {
-    let robot = paper();
+    let robot = paper_robot();
     let walk = robot.gait("walk").expect("walk");
     let mut twin = Twin::new(&robot, ServoModel::SG90);
     for (_, phase) in walk.frames().take(20) {
-        twin.push(widths(&robot, walk, phase));
+        twin.push(pulse_widths(&robot, walk, phase));
     }
     let state_before = (twin.angles(), twin.push([None; 4]).place);
     let state_after = twin.push([None; 4]);
     assert_eq!((state_after.angles, state_after.place), state_before);
     assert_eq!(
-        (state_after.pulsed, state_after.slip, state_after.frame),
+        (state_after.has_pulse, state_after.slips, state_after.frame),
         ([false; 4], [0.0; 4], 22)
     );
 }
 
 #[test]
-fn angles_that_are_asked_for_do_what_their_pulses_do() {
+fn target_angles_move_the_robot_like_their_pulses() {
     let robot = Robot::parse(include_str!("../../../robots/unequal.toml")).expect("right");
     let walk = robot.gait("walk").expect("walk");
     let mut twins = [0, 1].map(|_| Twin::new(&robot, ServoModel::SG90));
     for (_, phase) in walk.frames() {
-        let pulse_state = twins[0].push(widths(&robot, walk, phase));
+        let pulse_state = twins[0].push(pulse_widths(&robot, walk, phase));
         let angle_state = twins[1].push_angles(walk.table_angles(phase));
         for i in 0..4 {
             assert!((pulse_state.angles[i] - angle_state.angles[i]).abs() < 1e-9);
@@ -144,13 +153,14 @@ fn angles_that_are_asked_for_do_what_their_pulses_do() {
 }
 
 #[test]
-fn a_cycle_is_the_sum_of_its_frames() {
-    let robot = paper();
+fn simulate_cycle_equals_the_sum_of_its_frames() {
+    let robot = paper_robot();
     for name in ["walk", "trot", "left"] {
         let gait = robot.gait(name).expect(name);
-        let framed_travel = simulate_cycle(&robot, name, ServoModel::SG90, robot.ground()).travel();
+        let framed_travel =
+            simulate_last_of_four_cycles(&robot, name, ServoModel::SG90, robot.ground()).travel();
         let twin = Twin::new(&robot, ServoModel::SG90);
-        let cycle_travel = twin.cycle(gait).travel();
+        let cycle_travel = twin.simulate_cycle(gait).travel();
         let error = (cycle_travel.forward - framed_travel.forward).abs();
         assert!(error < 0.3, "{name} {cycle_travel:?} {framed_travel:?}");
         assert!(
@@ -160,14 +170,14 @@ fn a_cycle_is_the_sum_of_its_frames() {
         assert_eq!(
             twin.angles(),
             <[f64; 4]>::from(robot.neutral_pose()),
-            "it stands"
+            "the twin itself does not move"
         );
     }
 }
 
 #[test]
 fn a_pulse_beyond_a_servos_travel_is_clamped_to_its_end() {
-    let robot = paper();
+    let robot = paper_robot();
     let mut twin = Twin::new(&robot, ServoModel::Ideal);
     let state = twin.push([Some(9000.0), None, None, None]);
     assert_eq!(state.angles[0], robot.servos()[0].neutral + 90.0);

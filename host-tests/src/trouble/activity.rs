@@ -1,4 +1,4 @@
-//! The activities of the robot during which a scenario's trouble begins.
+//! Activities of the robot during which the trouble of a scenario begins.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub enum Activity {
     Starting,
     /// The robot answers a question.
     Talking,
-    /// The robot performs its routine, and its contacts close and open.
+    /// The robot performs its routine while its contacts close and open.
     Patrolling,
     /// A person drives the robot by radio.
     Driving,
@@ -42,7 +42,7 @@ impl Activity {
         Self::Driving,
     ];
 
-    /// Returns the activity of the scenario with this number. Four of thirteen scenarios are drives.
+    /// Returns the activity of the scenario with this number. In four of thirteen scenarios, a person drives the robot.
     #[must_use]
     pub fn of(number: u64) -> Self {
         let index = (number % 13) as usize;

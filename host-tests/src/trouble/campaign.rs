@@ -1,4 +1,4 @@
-//! A campaign: many scenarios, played and judged on several threads, and the summary of their results.
+//! Campaign of many scenarios, played and judged on several threads, and the summary of its results.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,18 +21,14 @@ pub struct Failure {
     /// The scenario.
     pub scenario: Scenario,
     /// The broken rules.
-    pub broken: Vec<BrokenRule>,
+    pub broken_rules: Vec<BrokenRule>,
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.scenario)?;
-        for BrokenRule {
-            rule,
-            observation: seen,
-        } in &self.broken
-        {
-            writeln!(f, "  does not hold: {}\n    {seen}", rule.sentence())?;
+        for BrokenRule { rule, observation } in &self.broken_rules {
+            writeln!(f, "  does not hold: {}\n    {observation}", rule.sentence())?;
         }
         Ok(())
     }
@@ -41,7 +37,7 @@ impl fmt::Display for Failure {
 /// The results of a campaign.
 #[derive(Debug, Default)]
 pub struct Summary {
-    /// For each activity, the number of scenarios played and the number of those that failed.
+    /// For each activity, the number of scenarios played and the number of scenarios failed.
     pub activities: BTreeMap<Activity, (u64, u64)>,
     /// The scenarios that failed, in the order of their numbers.
     pub failures: Vec<Failure>,
@@ -55,8 +51,12 @@ impl fmt::Display for Summary {
             writeln!(f, "{activity:14} {played:6} scenarios, {failed} failed")?;
         }
         for rule in Rule::ALL {
-            let breaks_rule =
-                |failure: &&Failure| failure.broken.iter().any(|broken| broken.rule == *rule);
+            let breaks_rule = |failure: &&Failure| {
+                failure
+                    .broken_rules
+                    .iter()
+                    .any(|broken| broken.rule == *rule)
+            };
             let failures: Vec<&Failure> = self.failures.iter().filter(breaks_rule).collect();
             if let Some(first) = failures.first() {
                 let (count, number) = (failures.len(), first.scenario.number);
@@ -71,33 +71,33 @@ impl fmt::Display for Summary {
     }
 }
 
-/// Plays and judges one scenario. Returns its cycles, and a failure if a rule is broken.
+/// Plays and judges one scenario. Returns its duration in cycles, and the failure if a rule is broken.
 #[must_use]
 pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<Failure>) {
     let record = play(image, robot, scenario);
-    let broken = broken_rules(&record, robot, scenario);
-    let failure = (!broken.is_empty()).then(|| Failure {
+    let broken_rules = broken_rules(&record, robot, scenario);
+    let failure = (!broken_rules.is_empty()).then(|| Failure {
         scenario: scenario.clone(),
-        broken,
+        broken_rules,
     });
-    (record.end, failure)
+    (record.end_cycle, failure)
 }
 
-/// Plays and judges the scenarios `0..count` of a seed on `threads` threads. Calls `progress` after each scenario
-/// with the number of scenarios done, and the scenario's failure if it failed.
-pub fn campaign(
+/// Plays and judges the scenarios `0..count` of a seed on `thread_count` threads. Calls `report_progress` after each
+/// scenario with the number of scenarios done, and the failure if the scenario failed.
+pub fn run_campaign(
     image: &Image,
     robot: &Robot,
     seed: u64,
     count: u64,
-    threads: usize,
-    progress: impl Fn(u64, Option<&Failure>) + Sync,
+    thread_count: usize,
+    report_progress: impl Fn(u64, Option<&Failure>) + Sync,
 ) -> Summary {
     let next_number = AtomicU64::new(0);
     let done_count = AtomicU64::new(0);
     let summary = Mutex::new(Summary::default());
     thread::scope(|scope| {
-        for _ in 0..threads {
+        for _ in 0..thread_count {
             scope.spawn(|| {
                 loop {
                     let number = next_number.fetch_add(1, Ordering::Relaxed);
@@ -106,7 +106,7 @@ pub fn campaign(
                     }
                     let scenario = Scenario::of(seed, number, robot);
                     let (cycles, failure) = judge(image, robot, &scenario);
-                    progress(
+                    report_progress(
                         done_count.fetch_add(1, Ordering::Relaxed) + 1,
                         failure.as_ref(),
                     );

@@ -1,5 +1,5 @@
-//! A simulated person who drives by radio, with the session logic of `lizard console`, while
-//! others send lines by cable.
+//! Simulation of a person who drives the robot by radio with the session logic of `lizard console`, while other people
+//! send lines by cable.
 
 use std::time::{Duration, Instant};
 
@@ -13,11 +13,13 @@ use simulated_uno::{Radio, RadioLink, Uno, Wire};
 use super::record::{MS, Record, Span};
 use super::setup;
 
-/// Average number of bytes on the wire of which one loses its stop bit.
+/// Average number of bytes on the wire per byte that loses its stop bit.
 const BYTES_PER_SPOILT_BYTE: u16 = 300;
 
-/// Index of the radio module among the senders on the wire to the board; `CABLE` is that of the cable.
+/// Index of the radio module among the two senders on the wire to the board.
 const RADIO: usize = 0;
+
+/// Index of the cable among the two senders on the wire to the board.
 const CABLE: usize = 1;
 
 /// A person with a phone, the radio link, the radio module, and the wire that the module and the cable share.
@@ -26,13 +28,13 @@ pub struct Drive<'a> {
     radio: Radio,
     wire: Wire,
     session: Session,
-    /// The instant that corresponds to the chip's cycle 0.
+    /// The instant of the chip's cycle 0.
     start: Instant,
-    random: Rng,
+    rng: Rng,
     /// Text that the phone has received after the last complete line.
-    text: String,
+    partial_line: String,
     /// The cycle until which the phone's screen is locked.
-    locked: u64,
+    locked_until_cycle: u64,
     has_left: bool,
 }
 
@@ -46,9 +48,9 @@ impl<'a> Drive<'a> {
             wire: Wire::new([link.baud; 2]),
             session: Session::new(start, true, false).with_person(),
             start,
-            random: Rng::with_seed(link.seed),
-            text: String::new(),
-            locked: 0,
+            rng: Rng::with_seed(link.seed),
+            partial_line: String::new(),
+            locked_until_cycle: 0,
             has_left: false,
         }
     }
@@ -64,24 +66,25 @@ impl<'a> Drive<'a> {
         self.wire.write(CABLE, bytes, now);
     }
 
-    /// Passes bytes on between board, cable, radio and phone; `sent` are the bytes that the board has sent since the
-    /// last call. Must be called every millisecond.
-    pub fn pass(&mut self, sent: &[u8], uno: &mut Uno, record: &mut Record) {
+    /// Passes bytes on between board, cable, radio and phone. `bytes_from_uno` are the bytes that the board has sent
+    /// since the last call. Must be called every millisecond.
+    pub fn pass_bytes(&mut self, bytes_from_uno: &[u8], uno: &mut Uno, record: &mut Record) {
         let (now, chip_baud) = (uno.cycle(), uno.chip_baud());
-        let received = self.radio.received_bytes(sent, chip_baud);
+        let received = self.radio.received_bytes(bytes_from_uno, chip_baud);
         let [to_uno, to_phone] = self.radio.pass(&received, now);
         self.wire.write(RADIO, &to_uno, now);
-        // The wire samples the bytes at the chip's baud rate, so they are passed on at this rate.
+        // The wire samples the bytes at the chip's baud rate, so the board receives them at this rate.
         uno.set_baud(chip_baud);
         for wire_byte in self.wire.receive(now, chip_baud) {
-            let is_spoilt = !self.has_left && self.random.u16(..BYTES_PER_SPOILT_BYTE) == 0;
+            let is_spoilt = !self.has_left && self.rng.u16(..BYTES_PER_SPOILT_BYTE) == 0;
             match wire_byte.filter(|_| !is_spoilt) {
                 Some(byte) => uno.send(&[byte]),
                 None => uno.send_with_framing_error(&[0]),
             }
         }
-        self.text.push_str(&String::from_utf8_lossy(&to_phone));
-        if self.has_left || self.locked > now {
+        self.partial_line
+            .push_str(&String::from_utf8_lossy(&to_phone));
+        if self.has_left || self.locked_until_cycle > now {
             return;
         }
         self.talk(now, record);
@@ -96,18 +99,18 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Lets the phone read the lines that it has received, and the person act at random.
+    /// Lets the phone read the received lines, and the person do something at random.
     fn talk(&mut self, now: u64, record: &mut Record) {
-        while let Some((line, rest)) = self.text.split_once('\n') {
+        while let Some((line, rest)) = self.partial_line.split_once('\n') {
             self.session.receive(line.trim_end_matches('\r'));
-            self.text = rest.to_owned();
+            self.partial_line = rest.to_owned();
         }
-        let moment = self.start + Duration::from_nanos(now * 125 / 2);
-        match self.random.u16(..4_000) {
-            0 => self.locked = now + self.random.u64(..3_000) * MS,
+        let instant = self.start + Duration::from_nanos(now * 125 / 2);
+        match self.rng.u16(..4_000) {
+            0 => self.locked_until_cycle = now + self.rng.u64(..3_000) * MS,
             1 => {
-                self.session.stop(moment);
-                record.stops.push(now);
+                self.session.stop(instant);
+                record.stop_cycles.push(now);
             }
             2..8 => {
                 let line = self.random_line();
@@ -115,27 +118,27 @@ impl<'a> Drive<'a> {
             }
             _ => {}
         }
-        self.session.end_overdue_question(moment);
+        self.session.end_overdue_question(instant);
         self.session.take_events();
-        while let Some(line) = self.session.next_line(moment) {
+        while let Some(line) = self.session.next_line(instant) {
             self.radio.write(format!("{line}\n").as_bytes(), now);
-            record.sent.push((now, line));
+            record.sent_lines.push((now, line));
         }
     }
 
     /// Returns a random line for the person to send.
     fn random_line(&mut self) -> String {
         let gaits = tour::moving_gaits(self.robot);
-        let gait = self.random.choice(&gaits).unwrap_or(&"stand");
+        let gait = self.rng.choice(&gaits).unwrap_or(&"stand");
         let gait = gait.replace('-', " ");
-        match self.random.u8(..24) {
-            0 | 1 => setup::pose(&mut self.random, self.robot),
-            2 | 3 => format!("speed {}", self.random.u8(10..=100)),
-            4 => setup::trim(&mut self.random),
+        match self.rng.u8(..24) {
+            0 | 1 => setup::random_pose(&mut self.rng, self.robot),
+            2 | 3 => format!("speed {}", self.rng.u8(10..=100)),
+            4 => setup::random_trim(&mut self.rng),
             5 | 6 => "stand".to_owned(),
             7 => "rest".to_owned(),
             8 | 9 => PATROL.to_owned(),
-            10..14 => format!("{gait} {}", self.random.u8(1..40)),
+            10..14 => format!("{gait} {}", self.rng.u8(1..40)),
             _ => gait,
         }
     }

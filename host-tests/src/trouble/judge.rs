@@ -1,5 +1,5 @@
-//! Judge of a scenario: converts the record to events for the observer of the rules, and checks those rules itself
-//! that need the whole record.
+//! Judge of a scenario. The judge converts the record to events for the observer of the rules, and itself checks the
+//! rules that need the whole record.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -8,6 +8,8 @@ use lizard_host::sim::lines::Line;
 use lizard_robot::Robot;
 use lizard_rules::{BrokenRule, Event, Limits, Observer, Pulse, Rule, Time, led};
 use simulated_uno::{Pin, ResetCause, State};
+
+use crate::FRAME_CYCLES;
 
 use super::record::{Exchange, MS, Record, Span};
 use super::scenario::Scenario;
@@ -22,20 +24,20 @@ const BYTE_CYCLES: u64 = 1_360;
 /// Returns the limits for a scenario's robot.
 fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
     let cycles_of_us = |us: f64| (us * 16.0).round() as u32;
-    let pace = robot.speed_limits();
-    let max_speed = pace.slew.max(pace.gait_slew);
+    let speed_limits = robot.speed_limits();
+    let max_speed = speed_limits.slew.max(speed_limits.gait_slew);
     let mentions = |text: &str| {
         let mut steps = scenario.steps.iter();
         steps.any(|step| step.to_string().contains(text))
     };
-    // If the scenario changes a servo's scale, the limit is that of the larger scale.
+    // If the scenario changes the scale of a servo, the larger scale sets the limit.
     let scale_text = if mentions("scale ") { WIDE_SCALE } else { "0" };
-    let wide_scale: f64 = scale_text.parse().expect("a number");
+    let scale_in_scenario: f64 = scale_text.parse().expect("a number");
     let servos = robot.servos().each_ref();
     Limits {
         // Allows a cycle of rounding at the start and at the end of a pulse, and half an angle step.
         max_leap_cycles: servos.map(|servo| {
-            cycles_of_us(max_speed / 50.0 * servo.us_per_degree.abs().max(wide_scale)) + 4
+            cycles_of_us(max_speed / 50.0 * servo.us_per_degree.abs().max(scale_in_scenario)) + 4
         }),
         width_ranges: servos.map(|servo| {
             (
@@ -78,7 +80,11 @@ pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<
         (Rule::StopRepeated, check_stop_is_answered(record)),
     ];
     for (rule, result) in checks {
-        all_broken.extend(result.err().map(|seen| BrokenRule::new(rule, seen)));
+        all_broken.extend(
+            result
+                .err()
+                .map(|observation| BrokenRule::new(rule, observation)),
+        );
     }
     all_broken.sort_by_key(|broken| broken.rule);
     all_broken.dedup_by_key(|broken| broken.rule);
@@ -100,53 +106,53 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     let time_of = |cycle: u64| cycle as Time;
     let mut events: Vec<(Time, Event<'_>)> = Vec::new();
     let mut add = |cycle: u64, event| events.push((time_of(cycle), event));
-    for (cycle, mv) in &record.supply {
+    for (cycle, mv) in &record.supply_mv {
         add(*cycle, Event::SupplyMv(*mv as u32));
     }
-    for cut in &record.cuts {
+    for cut in &record.cut_cycles {
         add(*cut, Event::ProgramCut);
     }
     for stall in &record.stalls {
         add(stall.start, Event::MainStalled(time_of(stall.end)));
     }
-    for hold in &record.holds {
-        add(hold.start, Event::InterruptsBlocked(time_of(hold.end)));
+    for block in &record.interrupt_blocks {
+        add(block.start, Event::InterruptsBlocked(time_of(block.end)));
     }
     for start in &record.starts {
         add(start.cycle, Event::ProgramStart(cause_of(start.cause)));
     }
-    for cycle in &record.bytes {
+    for cycle in &record.byte_cycles {
         add(*cycle, Event::ByteReceived);
     }
     for received in record
-        .received
+        .received_lines
         .iter()
         .filter(|received| !received.text.is_empty())
     {
         let is_command = received.is_command;
         add(received.cycle, Event::LineReceived { is_command });
         let is_saved = received.text == "save" && record.is_saved(received.cycle);
-        if is_saved || received.text == "save" || received.effect == Effect::Calibrates {
+        if received.text == "save" || received.effect == Effect::Calibrates {
             add(received.cycle, Event::CalibrationChanged { is_saved });
         }
     }
-    for (received, done) in record.orders() {
+    for (received, is_accepted) in record.orders() {
         let effect = received.effect;
         add(
             received.cycle,
             Event::Order {
                 effect,
-                is_accepted: done,
+                is_accepted,
             },
         );
     }
-    for line in &record.lines {
+    for line in &record.printed_lines {
         let length_cycles = BYTE_CYCLES * line.text.len() as u64;
         let start = time_of(line.cycle.saturating_sub(length_cycles));
         add(line.cycle, Event::LinePrinted(start, &line.text));
     }
     for exchange in &record.exchanges {
-        let (asked, line) = (time_of(exchange.asked), exchange.line.as_str());
+        let (asked_at, line) = (time_of(exchange.asked_cycle), exchange.line.as_str());
         let effect = exchange.effect;
         events.push(match &exchange.answer {
             Some(Line { cycle, text, .. }) => (
@@ -154,23 +160,26 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
                 Event::Answer {
                     line,
                     effect,
-                    asked_at: asked,
+                    asked_at,
                     answer: text,
                 },
             ),
-            None => (asked + time_of(400 * MS), Event::Unanswered(asked, line)),
+            None => (
+                asked_at + time_of(400 * MS),
+                Event::Unanswered(asked_at, line),
+            ),
         });
     }
     for (cycle, pulse) in &record.pulses {
         events.push((time_of(*cycle), Event::Pulse(*pulse)));
     }
-    for write in &record.written {
+    for write in &record.eeprom_writes {
         events.push((time_of(write.cycle), Event::ByteWritten));
     }
-    // The time limits of some rules end at a time at which nothing else is observed.
-    let pass_cycles = (0..record.end).step_by(100 * MS as usize);
-    events.extend(pass_cycles.map(|cycle| (time_of(cycle), Event::TimePasses)));
-    events.push((time_of(record.end), Event::TimePasses));
+    // Some rules have time limits, which may end when nothing else is observed.
+    let tick_cycles = (0..record.end_cycle).step_by(100 * MS as usize);
+    events.extend(tick_cycles.map(|cycle| (time_of(cycle), Event::TimePasses)));
+    events.push((time_of(record.end_cycle), Event::TimePasses));
     events.sort_by_key(|(time, _)| *time);
     events
 }
@@ -183,23 +192,26 @@ fn check_alive(record: &Record) -> Result<(), String> {
     }
 }
 
-/// Checks that the last `stand` of the scenario, long after all trouble, is carried out and that the servos then get
-/// constant pulses.
+/// Checks that the board carries out the last `stand` of the scenario, long after all trouble, and that the servos then
+/// get constant pulses.
 fn check_stand(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
     let last_status = exchanges.next().ok_or("nothing was asked")?;
     let stand_exchange = exchanges
         .find(|exchange| exchange.line == "stand")
         .ok_or("no stand")?;
-    if !stand_exchange.is_done() {
+    if !stand_exchange.is_accepted() {
         return Err(format!("stand is answered by {:?}", stand_exchange.answer));
     }
-    if last_status.status("gait") != Some("stand") || last_status.status("fault") != Some("none") {
+    if last_status.status_value("gait") != Some("stand")
+        || last_status.status_value("fault") != Some("none")
+    {
         return Err(format!("after stand: {:?}", last_status.answer));
     }
-    let late_start = record.end - 110 * MS;
+    let late_start_cycle = record.end_cycle - 110 * MS;
     for servo in 0..4 {
-        let is_late = |(cycle, pulse): &&(u64, Pulse)| pulse.servo == servo && *cycle > late_start;
+        let is_late =
+            |(cycle, pulse): &&(u64, Pulse)| pulse.servo == servo && *cycle > late_start_cycle;
         let late_pulses = record.pulses.iter().filter(is_late);
         let widths: Vec<u32> = late_pulses.map(|(_, pulse)| pulse.width).collect();
         let is_steady = widths.windows(2).all(|pair| pair[0] == pair[1]);
@@ -210,8 +222,9 @@ fn check_stand(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that `status` is the same before and after a refused command, unless the robot stopped by `deadman` or at
-/// the end of a counted motion, performs a routine, or was reset or disturbed between the two.
+/// Checks that `status` is the same before and after a refused command. Skips the command if, between the two, the
+/// robot stopped because of `deadman` or at the end of a counted motion, performed a routine, or was reset or
+/// disturbed.
 fn check_refusals(record: &Record) -> Result<(), String> {
     for exchanges in record.exchanges.windows(3) {
         let [status_before, refused_command, status_after] = exchanges else {
@@ -224,24 +237,25 @@ fn check_refusals(record: &Record) -> Result<(), String> {
         else {
             continue;
         };
-        let have_status =
-            status_before.status("gait").is_some() && status_after.status("gait").is_some();
+        let have_status = status_before.status_value("gait").is_some()
+            && status_after.status_value("gait").is_some();
         let span = answer_before.cycle..answer_after.cycle;
-        let has_ended_by_itself = record.lines.iter().any(|line| {
-            let is_end = line.text == "# done" || line.text.contains("as long as deadman says");
-            is_end && span.contains(&line.cycle)
+        let motion_ended = record.printed_lines.iter().any(|line| {
+            let reports_end =
+                line.text == "# done" || line.text.contains("as long as deadman says");
+            reports_end && span.contains(&line.cycle)
         });
         // A routine continues by itself, for example from a motion to a rest.
-        let is_routine = status_before.status("gait") == Some(PATROL)
-            || status_after.status("gait") == Some(PATROL);
-        let is_troubled = has_ended_by_itself
+        let is_routine = status_before.status_value("gait") == Some(PATROL)
+            || status_after.status_value("gait") == Some(PATROL);
+        let may_have_changed = motion_ended
             || is_routine
             || record.is_troubled(answer_before.cycle, answer_after.cycle);
-        if !is_refused || !have_status || is_troubled {
+        if !is_refused || !have_status || may_have_changed {
             continue;
         }
         for key in ["gait", "speed", "guard", "fault", "reset", "resets"] {
-            if status_before.status(key) != status_after.status(key) {
+            if status_before.status_value(key) != status_after.status_value(key) {
                 let line = &refused_command.line;
                 return Err(format!(
                     "{line}: {} and then {}",
@@ -253,9 +267,9 @@ fn check_refusals(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that each servo's pulses are exactly a frame apart, unless a reset or blocked interrupts came between them.
+/// Checks that successive pulses of a servo start exactly one frame apart, unless there was a reset or a block of
+/// interrupts between them.
 fn check_pulse_times(record: &Record) -> Result<(), String> {
-    const FRAME: u64 = 20 * MS;
     for servo in 0..4 {
         let pulses = record
             .pulses
@@ -264,31 +278,34 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
         let start_cycles: Vec<u64> = pulses.map(|(cycle, _)| *cycle).collect();
         for pair in start_cycles.windows(2) {
             let (from, to) = (pair[0], pair[1]);
-            // A longer distance is a missing frame, which another rule judges.
-            let is_next = to - from < FRAME + FRAME / 2;
-            let is_held = record.holds.iter().any(|hold| hold.overlaps(from, to));
-            let is_new = record
+            // A longer interval means a missing frame, which another rule judges.
+            let is_next_frame = to - from < FRAME_CYCLES + FRAME_CYCLES / 2;
+            let is_delayed = record
+                .interrupt_blocks
+                .iter()
+                .any(|block| block.overlaps(from, to));
+            let was_reset = record
                 .starts
                 .iter()
                 .any(|start| (from..to).contains(&start.cycle));
-            if is_next && to - from != FRAME && !is_held && !is_new {
-                let late_cycles = to as i64 - (from + FRAME) as i64;
-                let seen = format!(
+            if is_next_frame && to - from != FRAME_CYCLES && !is_delayed && !was_reset {
+                let late_cycles = to as i64 - (from + FRAME_CYCLES) as i64;
+                let observation = format!(
                     "A{}, {late_cycles} cycles late at {} ms",
                     servo + 1,
                     to / MS
                 );
-                return Err(seen);
+                return Err(observation);
             }
         }
     }
     Ok(())
 }
 
-/// Checks that every line that the board carried out was really sent.
+/// Checks that the board carried out only lines that were sent.
 fn check_orders_were_sent(record: &Record) -> Result<(), String> {
-    for line in &record.lines {
-        // After a reset, a banner may follow the cut-off part of an answer.
+    for line in &record.printed_lines {
+        // After a reset, the banner may follow an incomplete answer in the same line.
         let Some(answered_line) = line
             .text
             .strip_prefix("ok ")
@@ -301,20 +318,20 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
         } else {
             answered_line
         };
-        // If a reset comes while a line arrives, the program receives only the last part of the line. If the radio
-        // link breaks within a line, noise may end the line early.
+        // After a reset during a line, the program receives only the last part of the line. If the radio link breaks
+        // during a line, noise may end the line early.
         let recent_cycles = line.cycle.saturating_sub(200 * MS)..line.cycle;
         let mut starts = record.starts.iter();
-        let is_new = starts.any(|start| recent_cycles.contains(&start.cycle));
+        let was_reset = starts.any(|start| recent_cycles.contains(&start.cycle));
         let link_breaks_after = |cycle: u64| {
             record
                 .radio_spans
                 .iter()
                 .any(|link| (cycle..cycle + 200 * MS).contains(&link.end))
         };
-        let mut sent_lines = record.sent.iter();
+        let mut sent_lines = record.sent_lines.iter();
         let is_same_line = |(cycle, text): &(u64, String)| {
-            let is_part = is_new && text.ends_with(sent_line)
+            let is_part = was_reset && text.ends_with(sent_line)
                 || link_breaks_after(*cycle) && text.starts_with(sent_line);
             *cycle < line.cycle && (text == sent_line || is_part)
         };
@@ -325,22 +342,23 @@ fn check_orders_were_sent(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that each `stop` of the person at the phone is answered in time, if the radio link holds for that long and
-/// no trouble comes.
+/// Checks that the board answers each `stop` of the person at the phone in time, if the radio link lasts that long
+/// without trouble.
 fn check_stop_is_answered(record: &Record) -> Result<(), String> {
-    const ANSWER_TIME: u64 = 2_000 * MS;
-    // The time for an answer while the robot still searches for the line's baud rate: it leaves a rate that has
-    // carried a command after 32 wrong bytes, some eight lines, and then needs up to five more. One in ten is lost.
-    const RATE_SEARCH_TIME: u64 = 6_000 * MS;
-    // An answer to an earlier `stop` may come up to this time before the `stop`.
-    const EARLIER_ANSWER_TIME: u64 = 300 * MS;
-    for stop in &record.stops {
+    const ANSWER_CYCLES: u64 = 2_000 * MS;
+    // The limit while the board still searches for the line's baud rate. The board leaves a rate at which it has
+    // received a command only after 32 wrong bytes, in about eight lines, and then needs up to five lines more. One
+    // line in ten is lost.
+    const RATE_SEARCH_CYCLES: u64 = 6_000 * MS;
+    // The answer to an earlier `stop` also counts if it comes at most this long before the `stop`.
+    const EARLIER_ANSWER_CYCLES: u64 = 300 * MS;
+    for stop in &record.stop_cycles {
         let is_stop_answer = |line: &&Line| {
-            let is_end = line.text.ends_with("ok stop") || line.text.starts_with("err 7");
-            line.cycle + EARLIER_ANSWER_TIME > *stop && is_end
+            let is_answer = line.text.ends_with("ok stop") || line.text.starts_with("err 7");
+            line.cycle + EARLIER_ANSWER_CYCLES > *stop && is_answer
         };
         let answer_cycle = record
-            .lines
+            .printed_lines
             .iter()
             .find(is_stop_answer)
             .map(|line| line.cycle);
@@ -348,12 +366,12 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
             let start = link.start.max(*stop);
             let due_cycle = start
                 + if record.has_found_rate(start) {
-                    ANSWER_TIME
+                    ANSWER_CYCLES
                 } else {
-                    RATE_SEARCH_TIME
+                    RATE_SEARCH_CYCLES
                 };
-            let is_calm = !record.is_troubled(start.saturating_sub(300 * MS), due_cycle);
-            (link.end >= due_cycle && is_calm).then_some(due_cycle)
+            let is_undisturbed = !record.is_troubled(start.saturating_sub(300 * MS), due_cycle);
+            (link.end >= due_cycle && is_undisturbed).then_some(due_cycle)
         };
         let due_cycle = record.radio_spans.iter().find_map(due_cycle_in);
         if due_cycle.is_some_and(|due_cycle| answer_cycle.is_none_or(|cycle| cycle > due_cycle)) {
@@ -363,24 +381,24 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that the LED blinks the code of the fault that each `status` reports, from the last change (the report of a
-/// fault, an order or a start) on.
+/// Checks that the LED blinks the code of the fault that each `status` reports, since the last change: a reported
+/// fault, an order or a start of the program.
 fn check_led(record: &Record) -> Result<(), String> {
     let led_edges = record.edges.iter().filter(|edge| edge.pin == LED);
     let led_edges: Vec<(Time, bool)> = led_edges
         .map(|edge| (edge.cycle as Time, edge.is_rising))
         .collect();
-    let shown_code_of = |exchange: &'_ Exchange| {
+    let reported_code_of = |exchange: &'_ Exchange| {
         let cycle = exchange.answer.as_ref()?.cycle;
-        Some((cycle, led::fault_code(exchange.status("fault")?)))
+        Some((cycle, led::fault_code(exchange.status_value("fault")?)))
     };
-    // An order waits while older answers are printed, so the change is at the time of its own answer.
+    // An order waits while older answers are printed, so it takes effect at the time of its own answer.
     let reports_change = |text: &str| {
-        let is_done = text.starts_with("ok ") && !text.starts_with("ok gait=");
-        is_done || text.starts_with("# fault") || text.starts_with("# held")
+        let is_accepted_order = text.starts_with("ok ") && !text.starts_with("ok gait=");
+        is_accepted_order || text.starts_with("# fault") || text.starts_with("# held")
     };
     let change_lines = record
-        .lines
+        .printed_lines
         .iter()
         .filter(|line| reports_change(&line.text));
     let changes = change_lines.map(|line| line.cycle);
@@ -388,8 +406,8 @@ fn check_led(record: &Record) -> Result<(), String> {
     let changes: Vec<u64> = changes
         .chain(record.starts.iter().map(|start| start.cycle))
         .collect();
-    for (cycle, code) in record.exchanges.iter().filter_map(shown_code_of) {
-        // A flash of the LED that began before the last change does not belong to the present pattern.
+    for (cycle, code) in record.exchanges.iter().filter_map(reported_code_of) {
+        // A flash of the LED that began before the last change belongs to the previous pattern.
         let last_change = changes.iter().filter(|change| **change < cycle).max();
         let start = last_change.unwrap_or(&0) + 60 * MS;
         if !record.is_disturbed(start.saturating_sub(100 * MS), cycle) {

@@ -1,13 +1,13 @@
 //! Trouble at random moments: scenarios on the simulated UNO, judged by the safety rules.
 //!
-//! Tests of single features miss errors in the interaction of two features. So the main loop is stalled for 1 to 300
-//! ms at random cycles during every activity of the robot; resets, power cuts and drops of the supply come, too. The
-//! robot has a routine, and inputs whose contacts close and open. In four of thirteen scenarios a person also drives
-//! the robot by radio. Only outputs that are visible from outside are judged: pulses, lines, the LED, writes to the
-//! EEPROM. A scenario is determined by its seed and number, so a failing scenario can be played again.
+//! Tests of single features miss errors in the interaction of two features. In these scenarios the main loop is stalled
+//! for 1 to 300 ms at random cycles during every activity of the robot, and there are resets, power cuts and drops of
+//! the supply. The robot has a routine, and inputs whose contacts close and open. In four of thirteen scenarios a
+//! person also drives the robot by radio. The judge sees only the outputs that are visible from outside: pulses, lines,
+//! the LED, writes to the EEPROM. Seed and number determine a scenario, so a failing scenario can be played again.
 
 mod activity;
-pub mod campaign;
+mod campaign;
 mod drive;
 mod judge;
 pub mod record;
@@ -17,7 +17,7 @@ mod stage;
 pub mod step;
 
 pub use activity::Activity;
-pub use campaign::{Failure, Summary, campaign, judge};
+pub use campaign::{Failure, Summary, judge, run_campaign};
 pub use judge::events;
 pub use scenario::Scenario;
 pub use stage::play;

@@ -1,5 +1,5 @@
 //! Record of a scenario: the outputs that are visible from outside (pulses, lines, the LED, resets, writes to the
-//! EEPROM), and the troubles that were applied to the board.
+//! EEPROM), and the trouble that the board was given.
 
 use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
@@ -32,27 +32,27 @@ impl Span {
 #[derive(Debug, Clone)]
 pub struct Exchange {
     /// The cycle at which the line was sent.
-    pub asked: u64,
+    pub asked_cycle: u64,
     /// The line.
     pub line: String,
-    /// The effect on the servos if the line is carried out.
+    /// The effect on the servos if the board carries out the line.
     pub effect: Effect,
-    /// The answer: the first later line from the board that is an answer; `None` if the board did not answer in time.
+    /// The first answer that the board printed after the line was sent; `None` if the board did not answer in time.
     pub answer: Option<Line>,
 }
 
 impl Exchange {
     /// True if the answer was `ok`.
     #[must_use]
-    pub fn is_done(&self) -> bool {
+    pub fn is_accepted(&self) -> bool {
         let answer = self.answer.as_ref();
         answer.is_some_and(|line| line.text.starts_with("ok"))
     }
 
-    /// Returns the value of this key in the answer to `status`; `None` if this exchange was no answered `status`, or
-    /// if the answer lacks the key.
+    /// Returns the value of this key in the answer to `status`. `None` if the line is not `status`, if there is no
+    /// answer, or if the answer does not have the key.
     #[must_use]
-    pub fn status(&self, key: &str) -> Option<&str> {
+    pub fn status_value(&self, key: &str) -> Option<&str> {
         let text = self.answer.as_ref()?.text.strip_prefix("ok ")?;
         let pairs = text.split(' ').filter_map(|pair| pair.split_once('='));
         let mut matching_pairs = pairs.filter(|(name, _)| *name == key);
@@ -62,26 +62,26 @@ impl Exchange {
 
 /// A line that arrived at the board.
 #[derive(Debug, Clone)]
-pub struct Received {
-    /// The cycle at which the line end had arrived.
+pub struct ReceivedLine {
+    /// The cycle at which the line end arrived.
     pub cycle: u64,
     /// The line.
     pub text: String,
-    /// The effect on the servos if the line is carried out.
+    /// The effect on the servos if the board carries out the line.
     pub effect: Effect,
     /// True if the line is a command and arrived undamaged.
     pub is_command: bool,
 }
 
-impl Received {
+impl ReceivedLine {
     /// True if the line tells the robot to move, to stop or to rest.
     fn is_order(&self) -> bool {
-        let is_ordered = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
-        is_ordered && self.text != super::scenario::REFUSED_POSE
+        let affects_motion = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
+        affects_motion && self.text != super::scenario::REFUSED_POSE
     }
 }
 
-/// Everything that was observed in a scenario, and everything that was done to the board.
+/// The record of a scenario: everything that was observed, and everything that was done to the board.
 #[derive(Debug, Default)]
 pub struct Record {
     /// Edges of all pins.
@@ -89,34 +89,34 @@ pub struct Record {
     /// The pulses of A1 to A4, each with the cycle at which it begins.
     pub pulses: Vec<(u64, Pulse)>,
     /// The lines that the board printed.
-    pub lines: Vec<Line>,
-    /// The lines that were sent and whose answers were waited for, in order.
+    pub printed_lines: Vec<Line>,
+    /// The lines that were sent with a wait for their answers, in order.
     pub exchanges: Vec<Exchange>,
     /// The lines that arrived at the board, with or without waiting for an answer.
-    pub received: Vec<Received>,
+    pub received_lines: Vec<ReceivedLine>,
     /// The lines that were sent by cable or radio, each with its cycle.
-    pub sent: Vec<(u64, String)>,
-    /// The cycles at which the person at the phone stopped the robot.
-    pub stops: Vec<u64>,
-    /// The spans in which the radio link existed and the phone's screen was not locked, so that the person's lines
-    /// could reach the board.
+    pub sent_lines: Vec<(u64, String)>,
+    /// The cycles at which the person at the phone sent `stop`.
+    pub stop_cycles: Vec<u64>,
+    /// The spans in which the person's lines could reach the board: the radio link existed, and the phone's screen was
+    /// not locked.
     pub radio_spans: Vec<Span>,
     /// The cycles at which bytes arrived at the board.
-    pub bytes: Vec<u64>,
+    pub byte_cycles: Vec<u64>,
     /// Every start of the program.
     pub starts: Vec<ResetEvent>,
     /// Every write of the EEPROM.
-    pub written: Vec<EepromOperation>,
+    pub eeprom_writes: Vec<EepromOperation>,
     /// The supply voltages in mV, each with the cycle from which it applied.
-    pub supply: Vec<(u64, f64)>,
+    pub supply_mv: Vec<(u64, f64)>,
     /// The spans in which the main loop was stalled.
     pub stalls: Vec<Span>,
     /// The spans in which interrupts were blocked.
-    pub holds: Vec<Span>,
-    /// The cycles at which RESET was pulled low, or the supply fell below the brown-out level or was cut.
-    pub cuts: Vec<u64>,
+    pub interrupt_blocks: Vec<Span>,
+    /// The cycles at which RESET was pulled low, the supply was cut, or it fell below the brown-out level.
+    pub cut_cycles: Vec<u64>,
     /// The cycle at which the scenario ended.
-    pub end: u64,
+    pub end_cycle: u64,
     /// The board's state at the end; `None` until the scenario has ended.
     pub state: Option<State>,
 }
@@ -124,20 +124,20 @@ pub struct Record {
 impl Record {
     /// Finds the servos' pulses among the edges and adds them to the record.
     pub(super) fn find_pulses(&mut self, pins: [Pin; 4]) {
-        // The time after a reset within which the chip releases its pins.
-        const RELEASE_TIME: u64 = MS / 10;
+        // Cycles after a reset within which the chip releases its pins.
+        const RELEASE_CYCLES: u64 = MS / 10;
         for (servo, pin) in pins.into_iter().enumerate() {
             for pulse in pulses(&self.edges, pin) {
                 let (start, end) = (pulse.start, pulse.start + pulse.width);
                 let is_cut_at = |cycle: &u64| {
-                    (*cycle..*cycle + RELEASE_TIME).contains(&end) || (start..end).contains(cycle)
+                    (*cycle..*cycle + RELEASE_CYCLES).contains(&end) || (start..end).contains(cycle)
                 };
-                let is_held_by = |hold: &Span| hold.overlaps(start, end + MS);
+                let is_delayed_by = |block: &Span| block.overlaps(start, end + MS);
                 let pulse = Pulse {
                     servo,
                     width: pulse.width as u32,
-                    is_cut: self.cuts.iter().any(is_cut_at),
-                    is_end_late: self.holds.iter().any(is_held_by),
+                    is_cut: self.cut_cycles.iter().any(is_cut_at),
+                    is_end_late: self.interrupt_blocks.iter().any(is_delayed_by),
                 };
                 self.pulses.push((start, pulse));
             }
@@ -147,24 +147,24 @@ impl Record {
     /// True if the main loop was stalled or interrupts were blocked within `start..end`.
     #[must_use]
     pub fn is_disturbed(&self, start: u64, end: u64) -> bool {
-        let mut disturbances = self.stalls.iter().chain(&self.holds);
+        let mut disturbances = self.stalls.iter().chain(&self.interrupt_blocks);
         disturbances.any(|span| span.overlaps(start, end))
     }
 
     /// Returns the lines that tell the robot to move, to stop or to rest, each with its outcome: `Some(true)` if the
     /// board carried out the line, `Some(false)` if it refused the line, `None` if the outcome is unknown.
-    pub fn orders(&self) -> impl Iterator<Item = (&Received, Option<bool>)> {
-        self.received
+    pub fn orders(&self) -> impl Iterator<Item = (&ReceivedLine, Option<bool>)> {
+        self.received_lines
             .iter()
             .filter(|received| received.is_order())
             .map(|received| {
                 let matches_line = |exchange: &&Exchange| {
-                    exchange.line == received.text && exchange.asked <= received.cycle
+                    exchange.line == received.text && exchange.asked_cycle <= received.cycle
                 };
                 let exchange = self.exchanges.iter().rev().find(matches_line);
-                // The exchange belongs to this line only if the line arrived within the time that sending it takes.
+                // The exchange belongs to this line only if the line arrived within the time that sending takes.
                 let exchange =
-                    exchange.filter(|exchange| received.cycle - exchange.asked < 10 * MS);
+                    exchange.filter(|exchange| received.cycle - exchange.asked_cycle < 10 * MS);
                 let answer = exchange.and_then(|exchange| exchange.answer.as_ref());
                 let outcome = answer.and_then(|answer| match answer.text.get(..3)? {
                     "ok " => Some(true),
@@ -175,10 +175,10 @@ impl Record {
             })
     }
 
-    /// Derives the outcome of a line from the lines that the board prints in the next 300 ms, for a line whose answer
-    /// was not waited for. Returns `Some(true)` if the board carried out the line, `Some(false)` if it refused the
+    /// Derives the outcome of a line that was sent without a wait for its answer, from the lines that the board prints
+    /// in the next 300 ms. Returns `Some(true)` if the board carried out the line, `Some(false)` if it refused the
     /// line, `None` if the outcome is unknown.
-    fn derive_outcome(&self, received: &Received) -> Option<bool> {
+    fn derive_outcome(&self, received: &ReceivedLine) -> Option<bool> {
         let (from, to) = (received.cycle, received.cycle + 300 * MS);
         // A reset may have cut off the beginning of the line.
         let is_ok = |text: &str| {
@@ -186,7 +186,7 @@ impl Record {
             echo.is_some_and(|echo| received.text.ends_with(echo))
         };
         let next_lines = self
-            .lines
+            .printed_lines
             .iter()
             .filter(|line| (from..to).contains(&line.cycle));
         if next_lines.clone().any(|line| is_ok(&line.text)) {
@@ -202,15 +202,15 @@ impl Record {
     /// True if a `save` that arrived at this cycle was answered by `ok`.
     #[must_use]
     pub fn is_saved(&self, cycle: u64) -> bool {
-        let is_matching = |exchange: &Exchange| {
-            let sent_span = exchange.asked..exchange.asked + 10 * MS;
-            exchange.line == "save" && exchange.is_done() && sent_span.contains(&cycle)
+        let is_accepted_save = |exchange: &Exchange| {
+            let sent_span = exchange.asked_cycle..exchange.asked_cycle + 10 * MS;
+            exchange.line == "save" && exchange.is_accepted() && sent_span.contains(&cycle)
         };
-        self.exchanges.iter().any(is_matching)
+        self.exchanges.iter().any(is_accepted_save)
     }
 
-    /// True if, by this cycle, the board has answered after the person began to drive by radio and after the last
-    /// reset at which the board forgot the line's baud rate.
+    /// True if the board has found the line's baud rate by this cycle: it has answered a line since the person began to
+    /// drive by radio, and since the last reset at which it forgot the rate.
     #[must_use]
     pub fn has_found_rate(&self, cycle: u64) -> bool {
         let radio_start = self.radio_spans.first().map_or(cycle, |link| link.start);
@@ -220,7 +220,7 @@ impl Record {
         };
         let start = self.starts.iter().rev().find(forgets_rate);
         let search_start = start.map_or(radio_start, |start| start.cycle.max(radio_start));
-        let mut lines = self.lines.iter();
+        let mut lines = self.printed_lines.iter();
         lines.any(|line| line.is_answer() && (search_start..cycle).contains(&line.cycle))
     }
 
@@ -229,7 +229,7 @@ impl Record {
     pub fn is_troubled(&self, from: u64, to: u64) -> bool {
         let span = from..to;
         self.starts.iter().any(|start| span.contains(&start.cycle))
-            || self.cuts.iter().any(|cut| span.contains(cut))
+            || self.cut_cycles.iter().any(|cut| span.contains(cut))
             || self.is_disturbed(from, to)
     }
 }

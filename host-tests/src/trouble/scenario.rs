@@ -1,5 +1,5 @@
-//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and then
-//! commands that check the robot.
+//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and then commands that check
+//! the robot.
 
 mod troubles;
 
@@ -10,13 +10,12 @@ use lizard_core::numbers::rate::BaudRate;
 use lizard_host::patrol::PATROL;
 use lizard_host::sim::tour;
 use lizard_robot::Robot;
-use simulated_uno::{CYCLES_PER_MS, RadioLink};
+use simulated_uno::RadioLink;
 
 use super::activity::Activity;
+use super::record::MS;
 use super::setup;
 use super::step::Step;
-
-const MS: u64 = CYCLES_PER_MS;
 
 /// A pose beyond every servo's travel, which is always refused.
 pub(super) const REFUSED_POSE: &str = "pose 0 0 0 0";
@@ -26,7 +25,7 @@ pub(super) const REFUSED_POSE: &str = "pose 0 0 0 0";
 pub struct Scenario {
     /// The seed of the scenario's random numbers.
     pub seed: u64,
-    /// The scenario's number among those of the seed.
+    /// The scenario's number among the scenarios of the seed.
     pub number: u64,
     /// The robot's activity when trouble begins.
     pub activity: Activity,
@@ -52,16 +51,16 @@ impl fmt::Display for Scenario {
 }
 
 impl Scenario {
-    /// Makes the scenario with this number among those of a seed.
+    /// Makes the scenario with this number among the scenarios of a seed.
     #[must_use]
     pub fn of(seed: u64, number: u64, robot: &Robot) -> Self {
         let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
         let activity = Activity::of(number);
         let mut script = Script::new(&mut rng, robot);
-        script.activity(activity);
+        script.start_activity(activity);
         script.add_trouble(activity);
         script.end_drive();
-        script.add_aftermath();
+        script.add_final_checks();
         let steps = script.steps;
         Self {
             seed,
@@ -78,8 +77,8 @@ struct Script<'a> {
     rng: &'a mut Rng,
     robot: &'a Robot,
     steps: Vec<Step>,
-    /// True while a person drives by radio. Then lines are sent without waiting for an answer, since an answer may be
-    /// that to a line sent by radio.
+    /// True while a person drives by radio. Lines are then sent without a wait for their answers, since the next answer
+    /// may belong to a line sent by radio.
     is_driven: bool,
 }
 
@@ -110,30 +109,31 @@ impl<'a> Script<'a> {
         self.steps.push(Step::Wait(ms * MS));
     }
 
-    /// Waits for a random number of cycles, for less than `ms` milliseconds.
+    /// Waits for a random number of cycles, less than `ms` milliseconds.
     fn wait_up_to(&mut self, ms: u64) {
         let cycles = self.rng.u64(1..ms * MS);
         self.steps.push(Step::Wait(cycles));
     }
 
-    fn pose(&mut self) -> String {
-        setup::pose(self.rng, self.robot)
+    fn random_pose(&mut self) -> String {
+        setup::random_pose(self.rng, self.robot)
     }
 
-    fn gait(&mut self) -> String {
+    fn random_gait(&mut self) -> String {
         let gaits = tour::moving_gaits(self.robot);
         let name = self.rng.choice(&gaits);
         name.map_or("stand".into(), |name| name.replace('-', " "))
     }
 
-    /// Starts an activity and waits until a random cycle during the activity.
-    fn activity(&mut self, activity: Activity) {
+    /// Starts an activity and waits until a random cycle of the activity.
+    fn start_activity(&mut self, activity: Activity) {
         let is_at_power_on = activity == Activity::Starting && self.rng.u8(0..3) == 0;
         if !is_at_power_on {
             self.wait(600);
-            self.steps.extend(setup::settings(self.rng, self.robot));
+            self.steps
+                .extend(setup::random_settings(self.rng, self.robot));
             if self.rng.bool() {
-                let pose = self.pose();
+                let pose = self.random_pose();
                 self.say(pose);
                 self.wait(500);
             }
@@ -156,7 +156,7 @@ impl<'a> Script<'a> {
             }
             Activity::Holding => {
                 if self.rng.bool() {
-                    let gait = self.gait();
+                    let gait = self.random_gait();
                     self.say(gait);
                     self.wait_up_to(900);
                     self.say("stop");
@@ -164,12 +164,12 @@ impl<'a> Script<'a> {
                 self.wait_up_to(40);
             }
             Activity::Moving => {
-                let pose = self.pose();
+                let pose = self.random_pose();
                 self.send(pose);
                 self.wait_up_to(250);
             }
             Activity::Cycling => {
-                let gait = self.gait();
+                let gait = self.random_gait();
                 self.say(gait);
                 self.wait_up_to(2_000);
             }
@@ -189,13 +189,13 @@ impl<'a> Script<'a> {
                 return;
             }
             1 => {
-                let gait = self.gait();
+                let gait = self.random_gait();
                 self.say(gait);
                 self.wait_up_to(400);
             }
             _ => {}
         }
-        let line = setup::trim(self.rng);
+        let line = setup::random_trim(self.rng);
         self.say(line);
         self.wait(100);
         self.send("save");
@@ -207,7 +207,7 @@ impl<'a> Script<'a> {
             match self.rng.u8(0..4) {
                 0 => self.say("rest"),
                 1 => {
-                    let gait = self.gait();
+                    let gait = self.random_gait();
                     self.say(gait);
                 }
                 _ => {}
@@ -228,7 +228,7 @@ impl<'a> Script<'a> {
         match self.rng.u8(0..3) {
             0 => self.say("rest"),
             1 => {
-                let gait = self.gait();
+                let gait = self.random_gait();
                 self.say(gait);
             }
             _ => {}
@@ -248,7 +248,8 @@ impl<'a> Script<'a> {
         self.wait_up_to(120);
     }
 
-    /// Starts the routine, often presses the button for which the routine waits, and then presses random inputs.
+    /// Starts the routine. In three of four cases, presses the button for which the routine waits. Then presses random
+    /// inputs.
     fn start_patrol(&mut self) {
         self.say(PATROL);
         if self.rng.u8(0..4) > 0 {
@@ -262,13 +263,13 @@ impl<'a> Script<'a> {
         }
         for _ in 0..self.rng.u8(0..5) {
             self.wait_up_to(1_500);
-            self.press();
+            self.press_random_input();
         }
         self.wait_up_to(2_000);
     }
 
-    /// Presses an input for a random time, which may be too short to count, or until the end of the scenario.
-    fn press(&mut self) {
+    /// Presses a random input for a random time, which may be too short to count, or until the end of the scenario.
+    fn press_random_input(&mut self) {
         let inputs: Vec<(&str, u8)> = self.robot.inputs().named_pins().collect();
         let Some((_, pin)) = self.rng.choice(&inputs).copied() else {
             return;
@@ -280,8 +281,8 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Lets a person drive by radio. In a quarter of these scenarios, noise as from a radio module without a phone
-    /// comes first.
+    /// Lets a person drive by radio. A quarter of these scenarios begin with noise, as from a radio module without a
+    /// phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();
@@ -299,14 +300,14 @@ impl<'a> Script<'a> {
         };
         self.steps.push(Step::Drive(link));
         self.is_driven = true;
-        self.drive_on();
+        self.continue_drive();
     }
 
-    /// Lets the person drive on, while others send lines by the cable.
-    fn drive_on(&mut self) {
+    /// Lets the person continue to drive while other people send lines by cable.
+    fn continue_drive(&mut self) {
         for _ in 0..self.rng.u8(1..4) {
             self.wait_up_to(3_000);
-            let gait = self.gait();
+            let gait = self.random_gait();
             let lines = [
                 "status", "help", "cal", "speed 70", "nonsense", "stop", &gait, PATROL,
             ];
@@ -314,7 +315,7 @@ impl<'a> Script<'a> {
             self.send(line);
             if self.rng.u8(0..3) == 0 {
                 self.wait_up_to(300);
-                self.press();
+                self.press_random_input();
             }
         }
     }
@@ -323,7 +324,7 @@ impl<'a> Script<'a> {
         if !self.is_driven {
             return;
         }
-        self.drive_on();
+        self.continue_drive();
         self.wait_up_to(2_000);
         self.steps.push(Step::Leave);
         self.is_driven = false;
@@ -342,20 +343,20 @@ impl<'a> Script<'a> {
         self.wait(600);
     }
 
-    /// Waits, asks for the status, then sends a line that is refused, `walk`, `rest` and `stand`,
-    /// and asks for the status after each of them.
-    fn add_aftermath(&mut self) {
-        // In one case of four, waits long enough for the LED's fault pattern and for the gait that `boot` sets.
+    /// Waits and asks for the status. Then sends a line that is refused, `walk`, `rest` and `stand`, and asks for the
+    /// status after each of them.
+    fn add_final_checks(&mut self) {
+        // In one of four cases, waits long enough for the LED's fault pattern and for the gait after power-on.
         let wait_ms = if self.rng.u8(0..4) == 0 {
             5_500
         } else {
             self.rng.u64(350..800)
         };
         self.wait(wait_ms);
-        // Ends a line that a reset or the end of a link has cut off, and makes it invalid.
+        // Ends an incomplete line, left by a reset or by the end of a link, and makes it invalid.
         self.send("!");
         self.wait(150);
-        self.steps.push(Step::Find);
+        self.steps.push(Step::AskUntilAnswered);
         self.say("status");
         let refused_lines = [
             REFUSED_POSE,
@@ -367,11 +368,11 @@ impl<'a> Script<'a> {
         let refused_line = *self.rng.choice(&refused_lines).unwrap_or(&"nonsense");
         self.say(refused_line);
         self.say("status");
-        // A supply that has recovered counts as good only after a second.
+        // A supply counts as good only one second after it has recovered.
         if self
             .steps
             .iter()
-            .any(|step| matches!(step, Step::Supply(_) | Step::Weak(_)))
+            .any(|step| matches!(step, Step::Supply(_) | Step::WeakSupply(_)))
         {
             self.wait(1_300);
         }

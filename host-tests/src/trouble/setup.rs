@@ -1,17 +1,15 @@
-//! Settings that a scenario makes before trouble begins, saved or unsaved: the trims, scales and directions of
-//! servos, the gait after power-on, the `deadman` time, a servo's travel.
+//! Random commands, and the settings that a scenario makes before trouble begins. The settings are saved or unsaved:
+//! trims, scales and directions of servos, the gait after power-on, the `deadman` time, a servo's travel.
 
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
 use lizard_robot::Robot;
-use simulated_uno::CYCLES_PER_MS;
 
+use super::record::MS;
 use super::step::Step;
 
-const MS: u64 = CYCLES_PER_MS;
-
 /// Returns the command for a random pose within 9 degrees of the neutral pose.
-pub fn pose(rng: &mut Rng, robot: &Robot) -> String {
+pub fn random_pose(rng: &mut Rng, robot: &Robot) -> String {
     let servos = robot.servos();
     let angles: Vec<String> = (0..4)
         .map(|index| {
@@ -23,7 +21,7 @@ pub fn pose(rng: &mut Rng, robot: &Robot) -> String {
 }
 
 /// Returns the command for a random trim.
-pub fn trim(rng: &mut Rng) -> String {
+pub fn random_trim(rng: &mut Rng) -> String {
     let servo = rng.u8(1..=4);
     let degrees = f64::from(rng.i32(-1_500..1_500)) / 100.0;
     format!("trim {servo} {degrees:.2}")
@@ -40,11 +38,11 @@ fn limit_command(servo: usize, degrees: f64, robot: &Robot) -> String {
     format!("limit {} {low:.2} {high:.2}", servo + 1)
 }
 
-/// A servo scale far from that of robot.toml, us per degree.
+/// A servo scale far from the scale in robot.toml, us per degree.
 pub const WIDE_SCALE: &str = "17.77";
 
-/// Returns a command after which the main loop has to apply the servos' settings again.
-pub fn adjustment(rng: &mut Rng) -> String {
+/// Returns a random command that makes the main loop apply the servos' settings again.
+pub fn random_adjustment(rng: &mut Rng) -> String {
     match rng.u8(0..5) {
         0 => "load".into(),
         1 => "factory".into(),
@@ -54,19 +52,19 @@ pub fn adjustment(rng: &mut Rng) -> String {
             rng.u8(1..=4),
             if rng.bool() { '+' } else { '-' }
         ),
-        _ => trim(rng),
+        _ => random_trim(rng),
     }
 }
 
-/// Returns the steps that make settings of a random kind; in about half of the cases no steps.
-pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
+/// Returns the steps that make settings of a random kind. In about half of the cases, there are no steps.
+pub fn random_settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
     let wait = |ms: u64| Step::Wait(ms * MS);
     match rng.u8(0..16) {
         // Unsaved settings, which a reset discards.
-        0 | 1 => vec![say(trim(rng)), wait(150)],
+        0 | 1 => vec![say(random_trim(rng)), wait(150)],
         2 => vec![say(format!("dir {} -", rng.u8(1..=4))), wait(150)],
         // Saved settings.
-        3 => vec![say(trim(rng)), wait(150), say("save")],
+        3 => vec![say(random_trim(rng)), wait(150), say("save")],
         4 => {
             let boot_gait = if rng.bool() { "walk" } else { PATROL };
             vec![say(format!("boot {boot_gait}")), say("save")]
@@ -76,7 +74,7 @@ pub fn settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         // The saved travel is narrower than the travel in use.
         7 => {
             let servo = rng.usize(0..4);
-            // The gaits need 23 degrees of travel; beyond 23.9 degrees a leg's margin is too small.
+            // The gaits need 23 degrees of travel. Beyond 23.9 degrees the margin of a leg is too small.
             let degrees = 23.2;
             let limit_line = limit_command(servo, degrees, robot);
             let neutral = robot.servos().map(|servo| servo.neutral);

@@ -1,4 +1,4 @@
-//! Player of scenarios: plays a scenario on a simulated UNO and records everything that is observable from outside.
+//! Player of scenarios. Plays a scenario on a simulated UNO and records everything that is visible from outside.
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
@@ -11,21 +11,21 @@ use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin, State, Uno};
 
 use super::drive::Drive;
-use super::record::{Exchange, Received, Record, Span};
+use super::record::{Exchange, ReceivedLine, Record, Span};
 use super::scenario::Scenario;
 use super::step::Step;
 
 /// The longest wait for an answer, ms.
 const TIMEOUT_MS: u64 = 400;
 
-/// Number of `status` lines after which [`Stage::ask_until_answered`] ends: a robot with another baud rate needs up
-/// to five lines to find the rate of the line.
+/// Number of `status` lines after which [`Stage::ask_until_answered`] ends. A board with another baud rate needs up to
+/// five lines to find the rate of the line.
 const MAX_QUESTIONS: u32 = 12;
 
 /// The voltage of a good supply, mV.
 const GOOD_MV: f64 = 5_000.0;
 /// The voltage of a weak supply under load, mV.
-const FALLEN_MV: f64 = 2_400.0;
+const LOADED_WEAK_MV: f64 = 2_400.0;
 
 /// The voltage below which the chip is held in reset, mV, including the largest hysteresis.
 const BROWN_OUT_MV: f64 = 2_725.0;
@@ -33,22 +33,23 @@ const BROWN_OUT_MV: f64 = 2_725.0;
 /// Cycles of a byte sent to the board at 115 200 baud.
 const BYTE_CYCLES: u64 = 1_389;
 
-/// Cycles after the start of its last pulse for which a servo counts as having pulses.
+/// Cycles for which a servo counts as having pulses after the start of its last pulse.
 const RECENT_CYCLES: u64 = 25 * CYCLES_PER_MS;
 
-/// The state while a scenario is played: the board, the person who drives it by radio, if any, and the record so far.
+/// The state while a scenario is played: the board, the drive by radio if there is one, and the record so far.
 struct Stage<'a> {
     robot: &'a Robot,
     uno: Uno,
     pins: [Pin; 4],
     reader: LineReader,
     drive: Option<Drive<'a>>,
-    noise: Rng,
+    noise_rng: Rng,
     record: Record,
-    starts: usize,
-    is_weak: bool,
+    /// The number of starts of the program that have been handled.
+    start_count: usize,
+    is_supply_weak: bool,
     /// The cycle at which each servo's latest pulse began.
-    latest: [Option<u64>; 4],
+    latest_pulse_cycles: [Option<u64>; 4],
 }
 
 /// Plays a scenario from power-on to its end, and returns its record.
@@ -64,13 +65,13 @@ pub fn play(image: &Image, robot: &Robot, scenario: &Scenario) -> Record {
         pins: servo_pins(robot),
         reader: LineReader::default(),
         drive: None,
-        noise: Rng::with_seed(scenario.number),
+        noise_rng: Rng::with_seed(scenario.number),
         record: Record::default(),
-        starts: 1,
-        is_weak: false,
-        latest: [None; 4],
+        start_count: 1,
+        is_supply_weak: false,
+        latest_pulse_cycles: [None; 4],
     };
-    stage.record.supply.push((0, GOOD_MV));
+    stage.record.supply_mv.push((0, GOOD_MV));
     for step in &scenario.steps {
         stage.perform(step);
     }
@@ -99,19 +100,19 @@ impl Stage<'_> {
                     end: now + cycles,
                 });
             }
-            Step::Hold(cycles) => {
+            Step::BlockInterrupts(cycles) => {
                 self.uno.block_interrupts(*cycles);
                 // The blocking begins only when interrupts are enabled, so the recorded span is a millisecond longer.
                 let end = now + cycles + CYCLES_PER_MS;
-                self.record.holds.push(Span { start: now, end });
+                self.record.interrupt_blocks.push(Span { start: now, end });
             }
             Step::Reset => {
-                self.record.cuts.push(now);
+                self.record.cut_cycles.push(now);
                 self.uno.reset();
                 self.record_events();
             }
             Step::PowerCycle => {
-                self.record.cuts.push(now);
+                self.record.cut_cycles.push(now);
                 self.uno.power_cycle();
                 self.record_events();
             }
@@ -123,10 +124,10 @@ impl Stage<'_> {
                 }
             }
             Step::Contact(pin, is_closed) => self.uno.set_contact(Pin::arduino(*pin), *is_closed),
-            Step::Find => self.ask_until_answered(),
+            Step::AskUntilAnswered => self.ask_until_answered(),
             Step::Noise(cycles) => self.add_noise(*cycles),
-            Step::Weak(is_weak) => {
-                self.is_weak = *is_weak;
+            Step::WeakSupply(is_weak) => {
+                self.is_supply_weak = *is_weak;
                 if !is_weak {
                     self.set_supply(GOOD_MV);
                 }
@@ -141,16 +142,16 @@ impl Stage<'_> {
             Some(drive) => drive.send_by_cable(&bytes, now),
             None => self.uno.send(&bytes),
         }
-        self.record.sent.push((now, line.to_owned()));
+        self.record.sent_lines.push((now, line.to_owned()));
     }
 
     /// Sends `status` until the robot answers, at most [`MAX_QUESTIONS`] times.
     fn ask_until_answered(&mut self) {
         for _ in 0..MAX_QUESTIONS {
-            let first_line = self.record.lines.len();
+            let old_line_count = self.record.printed_lines.len();
             self.send("status");
             self.run_to(self.uno.cycle() + TIMEOUT_MS * CYCLES_PER_MS);
-            let new_lines = &self.record.lines[first_line..];
+            let new_lines = &self.record.printed_lines[old_line_count..];
             if new_lines
                 .iter()
                 .any(|line| line.text.starts_with("ok gait="))
@@ -160,24 +161,24 @@ impl Stage<'_> {
         }
     }
 
-    /// Sends random bytes to the board: in half of the cases as many as the line can carry in `cycles`, else at most
-    /// a twentieth of them.
+    /// Sends random bytes to the board: in half of the cases as many as the line can carry in `cycles`, otherwise at
+    /// most a twentieth as many.
     fn add_noise(&mut self, cycles: u64) {
         let max_count = cycles / BYTE_CYCLES;
-        let count = if self.noise.bool() {
+        let count = if self.noise_rng.bool() {
             max_count
         } else {
-            self.noise.u64(..=max_count / 20)
+            self.noise_rng.u64(..=max_count / 20)
         };
         for _ in 0..count {
-            let byte = match self.noise.u8(..4) {
+            let byte = match self.noise_rng.u8(..4) {
                 0 => b'\n',
-                1 => self.noise.u8(b' '..0x7f),
-                _ => self.noise.u8(..),
+                1 => self.noise_rng.u8(b' '..0x7f),
+                _ => self.noise_rng.u8(..),
             };
-            // A `?` alone in a line would print the help.
+            // A line with only a `?` would print the help.
             let byte = if byte == b'?' { b'!' } else { byte };
-            match self.noise.u8(..8) {
+            match self.noise_rng.u8(..8) {
                 0 => self.uno.send_with_framing_error(&[byte]),
                 _ => self.uno.send(&[byte]),
             }
@@ -185,20 +186,20 @@ impl Stage<'_> {
     }
 
     fn say(&mut self, line: &str) -> Option<String> {
-        let asked = self.uno.cycle();
+        let asked_cycle = self.uno.cycle();
         self.record_events();
-        let first_line = self.record.lines.len();
+        let old_line_count = self.record.printed_lines.len();
         self.send(line);
         let mut answer = None;
-        let end_cycle = asked + TIMEOUT_MS * CYCLES_PER_MS;
+        let end_cycle = asked_cycle + TIMEOUT_MS * CYCLES_PER_MS;
         while answer.is_none() && self.uno.cycle() < end_cycle && self.is_alive() {
             self.run_to(self.uno.cycle() + CYCLES_PER_MS);
-            let new_lines = &self.record.lines[first_line..];
+            let new_lines = &self.record.printed_lines[old_line_count..];
             answer = new_lines.iter().find(|line| line.is_answer()).cloned();
         }
         let text = answer.as_ref().map(|line| line.text.clone());
         self.record.exchanges.push(Exchange {
-            asked,
+            asked_cycle,
             line: line.to_owned(),
             effect: effect(line, self.robot.firmware()),
             answer,
@@ -214,21 +215,21 @@ impl Stage<'_> {
         let now = self.uno.cycle();
         if self
             .record
-            .supply
+            .supply_mv
             .last()
             .is_some_and(|(_, previous_mv)| *previous_mv == mv)
         {
             return;
         }
         self.uno.set_supply_mv(mv);
-        self.record.supply.push((now, mv));
+        self.record.supply_mv.push((now, mv));
         if mv < BROWN_OUT_MV {
-            self.record.cuts.push(now);
+            self.record.cut_cycles.push(now);
         }
     }
 
-    /// Runs until a cycle. A stall ends with a reset, a weak supply reacts to the pulses, and a drive passes bytes
-    /// on, so the run is divided into pieces of a millisecond during a stall, a weak supply or a drive.
+    /// Runs until a cycle, in pieces of a millisecond during a stall, a weak supply or a drive: a reset ends a stall, a
+    /// weak supply reacts to the pulses, and a drive passes bytes on.
     fn run_to(&mut self, end_cycle: u64) {
         while self.uno.cycle() < end_cycle && self.is_alive() {
             let now = self.uno.cycle();
@@ -237,7 +238,7 @@ impl Stage<'_> {
                 .stalls
                 .last()
                 .is_some_and(|stall| stall.end > now);
-            let step_cycles = if is_stalled || self.is_weak || self.drive.is_some() {
+            let step_cycles = if is_stalled || self.is_supply_weak || self.drive.is_some() {
                 CYCLES_PER_MS
             } else {
                 end_cycle - now
@@ -251,41 +252,41 @@ impl Stage<'_> {
     /// updates a weak supply.
     fn record_events(&mut self) {
         let bytes = self.uno.take_transmitted();
-        self.record.lines.extend(self.reader.read(&bytes));
+        self.record.printed_lines.extend(self.reader.read(&bytes));
         if let Some(drive) = &mut self.drive {
             let bytes: Vec<u8> = bytes.iter().map(|sent| sent.byte).collect();
-            drive.pass(&bytes, &mut self.uno, &mut self.record);
+            drive.pass_bytes(&bytes, &mut self.uno, &mut self.record);
         }
         let edges = self.uno.take_edges();
-        for (latest, pin) in self.latest.iter_mut().zip(self.pins) {
+        for (pulse_cycle, pin) in self.latest_pulse_cycles.iter_mut().zip(self.pins) {
             let is_rise = |edge: &&Edge| edge.is_rising && edge.pin == pin;
-            *latest = edges
+            *pulse_cycle = edges
                 .iter()
                 .rev()
                 .find(is_rise)
                 .map(|edge| edge.cycle)
-                .or(*latest);
+                .or(*pulse_cycle);
         }
         self.record.edges.extend(edges);
         let starts = self.uno.reset_events();
-        if starts.len() > self.starts {
-            self.starts = starts.len();
+        if starts.len() > self.start_count {
+            self.start_count = starts.len();
             self.uno.stall_main(0);
             let now = self.uno.cycle();
             if let Some(stall) = self.record.stalls.last_mut() {
                 stall.end = stall.end.min(now);
             }
         }
-        if self.is_weak {
+        if self.is_supply_weak {
             let recent_start = self.uno.cycle().saturating_sub(RECENT_CYCLES);
-            let active_servos = self
-                .latest
+            let active_servo_count = self
+                .latest_pulse_cycles
                 .iter()
                 .flatten()
                 .filter(|cycle| **cycle >= recent_start)
                 .count();
-            self.set_supply(if active_servos >= 3 {
-                FALLEN_MV
+            self.set_supply(if active_servo_count >= 3 {
+                LOADED_WEAK_MV
             } else {
                 GOOD_MV
             });
@@ -295,22 +296,22 @@ impl Stage<'_> {
     fn finish(mut self) -> Record {
         self.record_events();
         let mut record = self.record;
-        record.end = self.uno.cycle();
+        record.end_cycle = self.uno.cycle();
         record.starts = self.uno.reset_events();
-        record.written = self.uno.eeprom_operations();
+        record.eeprom_writes = self.uno.eeprom_operations();
         record.state = Some(self.uno.state().clone());
-        let mut text = Vec::new();
+        let mut line_bytes = Vec::new();
         for byte in self.uno.received_by_uno() {
-            record.bytes.push(byte.cycle);
+            record.byte_cycles.push(byte.cycle);
             match byte.byte {
                 b'\r' | b'\n' => {
                     record
-                        .received
-                        .push(record_of_line(&text, byte.cycle, self.robot));
-                    text.clear();
+                        .received_lines
+                        .push(record_of_line(&line_bytes, byte.cycle, self.robot));
+                    line_bytes.clear();
                 }
-                0x08 | 0x7f => _ = text.pop_if(|last| last.is_ascii()),
-                value => text.push(value),
+                0x08 | 0x7f => _ = line_bytes.pop_if(|last| last.is_ascii()),
+                value => line_bytes.push(value),
             }
         }
         record.find_pulses(self.pins);
@@ -319,21 +320,21 @@ impl Stage<'_> {
 }
 
 /// Makes the record of a received line from its bytes and the cycle at which its line end arrived.
-fn record_of_line(bytes: &[u8], cycle: u64, robot: &Robot) -> Received {
+fn record_of_line(bytes: &[u8], cycle: u64, robot: &Robot) -> ReceivedLine {
     let is_whole = bytes.len() <= MAX_LINE_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
     let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
-    Received {
+    ReceivedLine {
         cycle,
-        effect: effect_of_tail(&text, robot),
+        effect: effect_of_suffix(&text, robot),
         is_command: is_whole && is_known,
         text,
     }
 }
 
-/// Returns the effect of a line or, if the line is not a command, of its longest suffix that has an effect: a reset
-/// may have cut off something that precedes the command.
-fn effect_of_tail(line: &str, robot: &Robot) -> Effect {
+/// Returns the effect of a line or, if the line is not a command, of its longest suffix that has an effect. Other text
+/// may precede a command, such as an incomplete line left by a reset.
+fn effect_of_suffix(line: &str, robot: &Robot) -> Effect {
     let robot = robot.firmware();
     if parse(line.as_bytes(), robot).is_ok() {
         return effect(line, robot);

@@ -18,26 +18,24 @@ pub enum Step {
     /// Stalls the main loop for this many cycles, or until a reset.
     Stall(u64),
     /// Blocks interrupts for this many cycles.
-    Hold(u64),
+    BlockInterrupts(u64),
     /// Pulls the RESET pin low for an instant.
     Reset,
     /// Cuts the power and restores it.
     PowerCycle,
     /// Sets the supply voltage, mV.
     Supply(u16),
-    /// True connects a weak supply, which falls to 2.4 V whenever three servos have pulses; false
-    /// connects a good one.
-    Weak(bool),
-    /// Lets a person begin to drive by radio. The scenario's own lines go over the cable.
+    /// Connects a weak supply if true, which falls to 2.4 V whenever three servos have pulses; a good supply if false.
+    WeakSupply(bool),
+    /// Lets a person begin to drive by radio. The scenario's own lines still go through the cable.
     Drive(RadioLink),
-    /// Lets the person who drives leave with the phone, which ends the drive.
+    /// Ends the drive: the person leaves with the phone.
     Leave,
     /// Closes the contact at the pin with this Arduino number if true; opens it if false.
     Contact(u8, bool),
-    /// Sends `status` several times, until the robot answers: its serial line may have another
-    /// baud rate.
-    Find,
-    /// Sends random bytes on the serial line, at most as many as it can carry in this many cycles.
+    /// Sends `status` several times until the robot answers. The robot may have to find the line's baud rate first.
+    AskUntilAnswered,
+    /// Sends random bytes on the serial line, at most as many as the line can carry in this many cycles.
     Noise(u64),
 }
 
@@ -47,13 +45,15 @@ impl fmt::Display for Step {
             Self::Say(line) => write!(f, "say {line}"),
             Self::Send(line) => write!(f, "send {line} and do not wait"),
             Self::Order(line) => write!(f, "say {line}; if it rests, say stand"),
-            Self::Wait(cycles) => write!(f, "wait {}", Time(*cycles)),
-            Self::Stall(cycles) => write!(f, "stall main for {}", Time(*cycles)),
-            Self::Hold(cycles) => write!(f, "block interrupts for {}", Time(*cycles)),
+            Self::Wait(cycles) => write!(f, "wait {}", CyclesAsTime(*cycles)),
+            Self::Stall(cycles) => write!(f, "stall main for {}", CyclesAsTime(*cycles)),
+            Self::BlockInterrupts(cycles) => {
+                write!(f, "block interrupts for {}", CyclesAsTime(*cycles))
+            }
             Self::Reset => write!(f, "pull RESET"),
             Self::PowerCycle => write!(f, "cut the power and restore it"),
             Self::Supply(mv) => write!(f, "supply {mv} mV"),
-            Self::Weak(true) => write!(f, "supply 2400 mV whenever three servos have pulses"),
+            Self::WeakSupply(true) => write!(f, "supply 2400 mV whenever three servos have pulses"),
             Self::Drive(link) => write!(
                 f,
                 "a person drives by radio at {} baud: {:.0} % of the packets are lost, the link holds for {} ms{}",
@@ -68,18 +68,20 @@ impl fmt::Display for Step {
             ),
             Self::Contact(pin, true) => write!(f, "the contact at pin {pin} closes"),
             Self::Contact(pin, false) => write!(f, "the contact at pin {pin} opens"),
-            Self::Find => write!(f, "ask for the status until there is an answer"),
+            Self::AskUntilAnswered => write!(f, "ask for the status until there is an answer"),
             Self::Leave => write!(f, "the person goes away"),
-            Self::Noise(cycles) => write!(f, "noise on the serial line for {}", Time(*cycles)),
-            Self::Weak(false) => write!(f, "a strong supply again"),
+            Self::Noise(cycles) => {
+                write!(f, "noise on the serial line for {}", CyclesAsTime(*cycles))
+            }
+            Self::WeakSupply(false) => write!(f, "a strong supply again"),
         }
     }
 }
 
-/// A number of cycles, printed as a time, with the exact cycles unless it is a whole number of ms.
-pub struct Time(pub u64);
+/// A number of cycles that is printed as a time. The exact number follows unless the time is a whole number of ms.
+pub struct CyclesAsTime(pub u64);
 
-impl fmt::Display for Time {
+impl fmt::Display for CyclesAsTime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0.is_multiple_of(CYCLES_PER_MS) {
             write!(f, "{} ms", self.0 / CYCLES_PER_MS)

@@ -1,5 +1,5 @@
 //! Tests of the Arduino library in `arduino/`. `make arduino-test` compiles the library's examples as the Arduino IDE
-//! does. They run in the simulated UNO, and their edges equal those of the Rust crate `servo-pulses`.
+//! does. The examples run on the simulated UNO, and their edges must equal those of the Rust crate `servo-pulses`.
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{CYCLES_PER_US, frame_cycles};
@@ -8,6 +8,7 @@ use simulated_uno::{CYCLES_PER_MS, Edge, FREQUENCY, Fidelity, Pin, State, Uno};
 /// The pins of the eight servos in the library's examples.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
+/// The text that a test sends again and again without gaps.
 const FLOOD: &[u8] = b"The quick brown fox jumps over the lazy dog. ";
 
 fn load_elf(path: &str) -> Uno {
@@ -15,13 +16,13 @@ fn load_elf(path: &str) -> Uno {
         .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
 }
 
-/// Loads the sketch of this name, an example of the library or a sketch of the tests.
+/// Loads the sketch of this name: an example of the library, or a sketch of the tests.
 fn load_sketch(name: &str) -> Uno {
     load_elf(&format!("target/arduino/{name}/{name}.ino.elf"))
 }
 
 /// Returns every edge of the servos' pins, each with the number of cycles since the first edge.
-fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
+fn edges_since_first_edge(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     let is_servo = |edge: &&Edge| edge.pin != Pin::d(13);
     let edges: Vec<Edge> = uno.edges().iter().filter(is_servo).copied().collect();
     let first_cycle = edges.first().expect("there are edges").cycle;
@@ -30,7 +31,7 @@ fn edges_since_the_first(uno: &Uno) -> Vec<(u64, Pin, bool)> {
 }
 
 /// Returns the widths of each pin's pulses in 10 s, cycles, while the sketch echoes a gapless stream of bytes.
-fn widths_in_a_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
+fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     uno.run_ms(100);
     uno.take_edges();
     uno.take_transmitted();
@@ -56,24 +57,24 @@ fn jitter(widths: &[u64]) -> u64 {
 
 #[test]
 fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
-    let mut rust = Uno::load(
+    let mut rust_uno = Uno::load(
         FirmwareBench::elf().with_file_name("examples/sweep.elf"),
         Fidelity::DataSheet,
     )
     .unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"));
-    let mut cpp = load_sketch("EightServos");
-    for uno in [&mut rust, &mut cpp] {
+    let mut cpp_uno = load_sketch("EightServos");
+    for uno in [&mut rust_uno, &mut cpp_uno] {
         uno.run_ms(20_000);
     }
-    let [expected, edges] = [&rust, &cpp].map(edges_since_the_first);
-    let frames = 20_000 * CYCLES_PER_MS / u64::from(frame_cycles(8));
-    let common_count = expected.len().min(edges.len());
+    let [rust_edges, cpp_edges] = [&rust_uno, &cpp_uno].map(edges_since_first_edge);
+    let frame_count = 20_000 * CYCLES_PER_MS / u64::from(frame_cycles(8));
+    let common_count = rust_edges.len().min(cpp_edges.len());
     assert!(
-        common_count as u64 >= (frames - 3) * 16,
+        common_count as u64 >= (frame_count - 3) * 16,
         "{common_count} edges"
     );
-    let first_difference = (0..common_count).find(|index| edges[*index] != expected[*index]);
-    let pair = first_difference.map(|index| (index, edges[index], expected[index]));
+    let first_difference = (0..common_count).find(|index| cpp_edges[*index] != rust_edges[*index]);
+    let pair = first_difference.map(|index| (index, cpp_edges[index], rust_edges[index]));
     assert_eq!(pair, None, "the first edge that differs, C++ and Rust");
 }
 
@@ -82,7 +83,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     let mut uno = load_sketch("BesideSerial");
     // 90 degrees in a range from 544 to 2400 us.
     let width = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
-    for widths in widths_in_a_flood(&mut uno, &PINS) {
+    for widths in record_widths_in_flood(&mut uno, &PINS) {
         assert!(widths.len() > 440, "{} pulses", widths.len());
         assert!(
             widths.iter().all(|actual| *actual == width),
@@ -91,7 +92,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     }
     assert_eq!(uno.overruns(), 0);
     let readme = std::fs::read_to_string(root().join("arduino/ServoPulses/README.md"));
-    let readme = readme.expect("it is there");
+    let readme = readme.expect("the README exists");
     for row in [
         format!(
             "| flash of the whole sketch, bytes | {} |",
@@ -106,8 +107,8 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     }
 }
 
-/// Returns the cycles per second in the handlers of Timer1's compare matches.
-fn cycles_in_handlers(uno: &Uno) -> u64 {
+/// Returns the cycles per second spent in the handlers of Timer1's compare matches.
+fn handler_cycles_per_second(uno: &Uno) -> u64 {
     let handlers = uno.interrupts().into_iter();
     let cycles = handlers
         .filter(|handler| [11, 12].contains(&handler.vector))
@@ -117,22 +118,22 @@ fn cycles_in_handlers(uno: &Uno) -> u64 {
 
 #[test]
 #[ignore = "needs Arduino's Servo library: make arduino-test SERVO=folder"]
-fn the_servo_library_trembles_in_the_same_flood() {
-    for (name, jitters) in [("ServoBesideSerial", 50..200), ("BesideSerial", 0..1)] {
+fn the_servo_library_has_jitter_in_the_same_flood() {
+    for (name, allowed_jitters) in [("ServoBesideSerial", 50..200), ("BesideSerial", 0..1)] {
         let mut uno = load_sketch(name);
-        let widths = widths_in_a_flood(&mut uno, &PINS);
+        let widths = record_widths_in_flood(&mut uno, &PINS);
         let measured_jitters: Vec<u64> = widths.iter().map(|widths| jitter(widths)).collect();
         let image = uno.image();
         println!(
             "{name}: jitter {measured_jitters:?} cycles, {} bytes of flash, {} of RAM, {} cycles a second",
             image.flash_used(),
             image.static_ram(),
-            cycles_in_handlers(&uno)
+            handler_cycles_per_second(&uno)
         );
         assert!(
             measured_jitters
                 .iter()
-                .all(|jitter| jitters.contains(jitter))
+                .all(|jitter| allowed_jitters.contains(jitter))
         );
     }
 }
@@ -152,25 +153,22 @@ fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
         // A falling edge waits until interrupts are enabled again, 30 us at most.
         assert!((24_000..24_500).contains(&pulse.width), "{}", pulse.width);
     }
-    assert!(
-        uno.is_high(Pin::d(13)),
-        "the sketch sees that edges were late"
-    );
+    assert!(uno.is_high(Pin::d(13)), "the sketch reports the late edges");
 }
 
 #[test]
 fn every_change_of_a_width_appears_whole_and_no_pulse_is_cut() {
     let mut uno = load_sketch("Restless");
-    let widths = widths_in_a_flood(&mut uno, &[9, 14]);
+    let widths = record_widths_in_flood(&mut uno, &[9, 14]);
     let [written_widths, attached_widths] = &widths[..] else {
         unreachable!()
     };
     for width in [0x5dff, 0x5e00] {
-        let times = written_widths
+        let pulse_count = written_widths
             .iter()
             .filter(|actual| **actual == width)
             .count();
-        assert!(times > 20, "{width} {times} times");
+        assert!(pulse_count > 20, "{width} {pulse_count} times");
     }
     let torn_width = written_widths
         .iter()
@@ -185,13 +183,13 @@ fn every_change_of_a_width_appears_whole_and_no_pulse_is_cut() {
 }
 
 #[test]
-fn angles_and_widths_are_those_of_the_servo_library() {
+fn angles_and_widths_equal_those_of_the_servo_library() {
     let mut uno = load_sketch("Ask");
     assert!(uno.run_until_line(100 * CYCLES_PER_MS));
     let numbers = uno.take_transmitted();
     let numbers: Vec<u8> = numbers.iter().map(|byte| byte.byte).collect();
-    // The sketch prints, for each attached servo, the servo's index plus `attached()`, which is 1; 255 for a ninth
-    // servo, and for pin 20.
+    // For each of eight servos, the sketch prints the servo's index plus `attached()`, which is 1. For a ninth servo
+    // and for pin 20 it prints 255.
     assert_eq!(String::from_utf8_lossy(&numbers), "12345678255255\r\n");
     for (value, angle, us) in [
         (0, 0, 1000),
@@ -223,7 +221,7 @@ fn angles_and_widths_are_those_of_the_servo_library() {
             widths.iter().all(|width| *width == us * 16),
             "{value}: {widths:?}"
         );
-        // No other pin has a servo attached any more.
+        // All other servos are detached now.
         assert!(uno.edges().iter().all(|edge| edge.pin == Pin::d(2)));
     }
 }

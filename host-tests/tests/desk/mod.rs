@@ -1,5 +1,5 @@
-//! A new board at a serial port of this machine, for tests of programs that write firmware to boards: a simulated UNO
-//! at a pseudo terminal, in real time, with the boot loader of a stock UNO or of an old Nano in its flash.
+//! New board at a serial port of this machine, for tests of programs that write firmware to boards. The board is a UNO,
+//! simulated in real time at a pseudo terminal, with the boot loader of a stock UNO or of an old Nano in its flash.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -10,15 +10,16 @@ use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
 
 use crate::shell::Shell;
 
-/// Address of the boot loader's first byte; the firmware ends before it.
+/// Address of the first byte of a UNO's boot loader. The firmware ends before this address.
 pub const BOOT_LOADER_START: usize = 0x7e00;
 
-pub fn boot_loader() -> Image {
-    loader("optiboot.elf")
+/// Loads the boot loader of a stock UNO.
+pub fn uno_boot_loader() -> Image {
+    load_boot_loader("optiboot.elf")
 }
 
 /// Loads a boot loader that `make flash-test` has built.
-pub fn loader(name: &str) -> Image {
+pub fn load_boot_loader(name: &str) -> Image {
     let path: PathBuf = root().join("target/flash-test").join(name);
     Image::read(path).expect("`make flash-test` makes the boot loaders")
 }
@@ -31,29 +32,29 @@ pub struct Desk {
 }
 
 impl Desk {
-    pub fn with_a_new_board() -> Self {
-        Self::with(boot_loader())
+    pub fn with_new_uno() -> Self {
+        Self::with_boot_loader(uno_boot_loader())
     }
 
-    pub fn with(loader: Image) -> Self {
+    pub fn with_boot_loader(boot_loader: Image) -> Self {
         Self {
-            uno: Uno::with_boot_loader(loader, Fidelity::DataSheet),
+            uno: Uno::with_boot_loader(boot_loader, Fidelity::DataSheet),
             port: Port::new().expect("a pseudo terminal"),
             edges: Vec::new(),
         }
     }
 
     /// The path of the board's serial port.
-    pub fn name(&self) -> String {
+    pub fn port_path(&self) -> String {
         self.port.path().display().to_string()
     }
 
     /// Runs the board until the condition holds. Returns false if the condition does not hold within the time limit.
     pub fn run_until(&mut self, mut condition: impl FnMut(&mut Uno) -> bool) -> bool {
         LIMIT.wait_for(|| {
-            let step = Duration::from_millis(10);
+            let period = Duration::from_millis(10);
             self.port
-                .serve(&mut self.uno, step)
+                .serve(&mut self.uno, period)
                 .expect("the port works");
             self.edges.extend(self.uno.take_edges());
             condition(&mut self.uno)
@@ -62,19 +63,19 @@ impl Desk {
 
     /// Runs the board until `text` is on the screen. Fails if the text does not appear within the time limit.
     pub fn wait_for_text(&mut self, shell: &Shell, text: &str) {
-        let was_seen = self.run_until(|_| shell.screen().contains(text) || shell.has_ended());
+        let is_in_time = self.run_until(|_| shell.screen().contains(text) || shell.has_ended());
         let screen = if shell.has_ended() {
             shell.last_screen()
         } else {
             shell.screen()
         };
         assert!(
-            was_seen && screen.contains(text),
+            is_in_time && screen.contains(text),
             "waited up to {LIMIT} for {text:?} in\n{screen}"
         );
     }
 
-    /// Runs the board until the program in the shell has ended. Returns the screen.
+    /// Runs the board until the program in the shell has ended. Returns all output of the program.
     pub fn run_until_exit(&mut self, shell: &Shell) -> String {
         let has_ended = self.run_until(|_| shell.has_ended());
         let screen = if has_ended {
@@ -89,7 +90,7 @@ impl Desk {
         screen
     }
 
-    /// Returns the addresses before the boot loader at which the flash differs from a program.
+    /// Returns the addresses below the boot loader at which the flash differs from a program.
     pub fn differences(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
         (0..BOOT_LOADER_START)
@@ -104,9 +105,9 @@ impl Desk {
             wrong_addresses.is_empty(),
             "the flash differs at {wrong_addresses:x?}"
         );
-        let new_uno = Uno::with_boot_loader(boot_loader(), Fidelity::DataSheet);
-        let is_whole =
+        let new_uno = Uno::with_boot_loader(uno_boot_loader(), Fidelity::DataSheet);
+        let is_unchanged =
             self.uno.flash()[BOOT_LOADER_START..] == new_uno.flash()[BOOT_LOADER_START..];
-        assert!(is_whole, "the boot loader has changed");
+        assert!(is_unchanged, "the boot loader has changed");
     }
 }

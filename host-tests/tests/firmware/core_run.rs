@@ -4,7 +4,7 @@
 use fastrand::Rng;
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME_CYCLES, first_cycle, group_frames, servo_pins};
-use lizard_host_tests::{FirmwareBench, minutes, robot};
+use lizard_host_tests::{FirmwareBench, dialogue_minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
 use crate::{Status, boot_standing, comparable_line, for_each_in_parallel};
@@ -14,7 +14,7 @@ const CYCLES_PER_BYTE: u64 = 1400;
 
 /// Returns the cycle at which the comparison ends.
 fn end_cycle() -> u64 {
-    60 * minutes() * FREQUENCY
+    60 * dialogue_minutes() * FREQUENCY
 }
 
 /// Returns a random line: any command, valid or not.
@@ -132,7 +132,7 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
             u64::from(sent_line_count),
             distinct_widths.len() as u64,
         ];
-        let min_counts = [2_900, 100, 500].map(|minimum| minimum * minutes());
+        let min_counts = [2_900, 100, 500].map(|minimum| minimum * dialogue_minutes());
         assert!((0..3).all(|i| counts[i] > min_counts[i]), "{counts:?}");
 
         // The answers also agree, except for the fault counters, which are 0 on the host. Reports are not compared,

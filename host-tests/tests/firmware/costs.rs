@@ -1,14 +1,19 @@
 //! Tests of the firmware's costs: it meets every budget of `lizard sim bench` that is counted in cycles or bytes.
 
 use lizard_host::bench::{Figures, rows};
-use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, patrolling, robot};
+use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, patrolling_robot, robot};
 use simulated_uno::Fidelity;
 
 use crate::{FRAMES_PER_SECOND, boot_and_command, first_moving_gait};
 
 #[test]
 fn every_budget_is_met() {
-    let figures = Figures::measure(&FirmwareBench::elf(), robot(), Some(patrolling()), |_| {});
+    let figures = Figures::measure(
+        &FirmwareBench::elf(),
+        robot(),
+        Some(patrolling_robot()),
+        |_| {},
+    );
     let figures = figures.expect("the measurement runs");
     let mut missed_rows = Vec::new();
     for row in rows(&figures).iter().filter(|row| !row.wall_clock) {

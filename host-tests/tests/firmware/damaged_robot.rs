@@ -8,7 +8,7 @@ use std::ops::Range;
 use lizard_core::console::word::Word;
 use lizard_core::numbers::section::{Header, Numbers, SPACE_BYTES, START_ADDRESS, write_checksum};
 use lizard_host::board::SimulatedBoard;
-use lizard_host::firmware::with_robot;
+use lizard_host::firmware::read_with_robot;
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, rng, robot, root};
 use lizard_robot::Robot;
 use simulated_uno::{Edge, Fidelity, Image, Pin};
@@ -270,7 +270,7 @@ fn the_largest_section_is_checked_within_a_frame() {
         |name| {
             let robot = Robot::load(root().join(format!("robots/{name}.toml")))
                 .expect("the file describes a robot");
-            let image = with_robot(&FirmwareBench::elf(), &robot)
+            let image = read_with_robot(&FirmwareBench::elf(), &robot)
                 .expect("`make firmware` has built the ELF");
             let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
             let calls = FirmwareBench::with_board(board).time_calls("Robot::open", 200);

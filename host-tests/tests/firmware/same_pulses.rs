@@ -5,7 +5,7 @@
 //! changes the digest. An intended change of a robot's values or of the effect of a command also changes
 //! it. In that case, replace the records with those that the failed test prints.
 
-use lizard_host::firmware::with_robot;
+use lizard_host::firmware::read_with_robot;
 use lizard_host::sim::frame::{FRAME_CYCLES, servo_pins};
 use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, root};
@@ -88,7 +88,7 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     let frames = 600 * FRAMES_PER_SECOND;
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     let robot = robot.unwrap_or_else(|error| panic!("{error}"));
-    let image = with_robot(&FirmwareBench::elf(), &robot);
+    let image = read_with_robot(&FirmwareBench::elf(), &robot);
     let image = image.unwrap_or_else(|error| panic!("{error}; make firmware"));
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     supplies::connect(&mut uno, &robot);

@@ -229,7 +229,7 @@ fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let elf = FirmwareBench::elf();
     fs::copy(elf.with_extension("hex"), folder.join("made.hex"))
         .expect("`make firmware` has built the firmware");
-    let image = lizard_host::firmware::with_robot(&elf, robot())
+    let image = lizard_host::firmware::read_with_robot(&elf, robot())
         .expect("`make firmware` has built the firmware");
     let image = lizard_upload::Image::new(image.flash()).expect("the flash makes an image");
     fs::write(folder.join("image.hex"), image.to_hex()).expect("the folder is writable");

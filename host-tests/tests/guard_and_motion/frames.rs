@@ -1,4 +1,4 @@
-//! A robot that the tests command through its console, and the checks of every frame that it sends.
+//! Robot in the core that the tests command through its console. Every frame that the robot sends is checked.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -9,36 +9,36 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::{Pose, Pulses};
 use lizard_core::numbers::units::CYCLE;
 use lizard_core::virtual_board::RunningRobot;
-use lizard_host_tests::Named;
+use lizard_host_tests::NamedRobot;
 use lizard_robot::{CheckedGait, Robot};
 
-use crate::truth::{Verdict, angles, is_safe, pose_within};
+use crate::truth::{Verdict, angles, is_safe, random_pose_within};
 
 /// Frames until all servos are awake.
 pub const WAKING_FRAMES: u32 = 20;
 
 /// The speed of one angle step per frame, deg/s.
-pub const STEP_PER_FRAME: f64 = 50.0 * 360.0 / 65536.0;
+pub const STEP_SPEED_DEG_PER_S: f64 = 50.0 * 360.0 / 65536.0;
 
-/// Number of frames in which a motion accelerates to its pace, or brakes.
+/// Frames in which a motion accelerates to its pace, or brakes.
 const ACCELERATION_FRAMES: f64 = 7.0;
 
-/// Largest rounding error of a change of speed, in angle steps per frame.
-const ROUNDING: f64 = 4.0;
+/// Maximum rounding error of a change of speed, angle steps per frame.
+const SPEED_CHANGE_ERROR_STEPS: f64 = 4.0;
 
-/// Returns the largest allowed change of a servo's speed from one frame to the next, deg/s. `stop`, `rest`
-/// and the guard are exempt, since they stop a servo at once.
+/// Returns the largest allowed change of a servo's speed from one frame to the next, deg/s. It does not apply to
+/// `stop`, `rest` and the guard, which stop a servo at once.
 ///
-/// A point-to-point move changes speed most at the start and the end of the shortest move, of
-/// eight frames: by `6 distance / 8^2` per frame, at a mean speed of 2/3 of the slew limit. That
-/// is half the slew limit, also where one move ends and the next turns the servo straight back. A gait
-/// changes the servos' speeds by its waveforms, and gaining or losing pace adds to these changes.
+/// Of all moves to a pose, the shortest move has the largest change of speed, at its start and its end. The shortest
+/// move has eight frames and a mean speed of 2/3 of the slew limit, so its speed changes by `6 distance / 8^2` per
+/// frame: half the slew limit. This also holds where one move ends and the next turns the servo back. In a gait, the
+/// waveforms change the servos' speeds, and a change of pace adds to these changes.
 ///
 /// The value is computed once for each robot and cached by the hash of the robot's numbers.
 pub fn max_speed_change(robot: &Robot) -> f64 {
-    static KNOWN: Mutex<BTreeMap<u32, f64>> = Mutex::new(BTreeMap::new());
-    let mut known = KNOWN.lock().expect("no test fails in here");
-    *known
+    static CACHE: Mutex<BTreeMap<u32, f64>> = Mutex::new(BTreeMap::new());
+    let mut cache = CACHE.lock().expect("no thread has panicked");
+    *cache
         .entry(robot.firmware().hash())
         .or_insert_with(|| compute_max_speed_change(robot))
 }
@@ -50,11 +50,11 @@ fn compute_max_speed_change(robot: &Robot) -> f64 {
         change.max(speed / ACCELERATION_FRAMES + robot.speed_limits().slew / 4.0)
             + speed / ACCELERATION_FRAMES
     });
-    gaits.fold(move_change, f64::max) + ROUNDING * STEP_PER_FRAME
+    gaits.fold(move_change, f64::max) + SPEED_CHANGE_ERROR_STEPS * STEP_SPEED_DEG_PER_S
 }
 
-/// Returns the largest servo speed in a gait at full pace, and the largest change of that speed from one
-/// frame to the next, deg/s.
+/// Returns the largest servo speed in a gait at full pace, and the largest change of a servo's speed from one frame to
+/// the next, deg/s.
 fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     let firmware = robot.firmware();
     let gait = firmware.gait(id);
@@ -63,51 +63,52 @@ fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
             .0
             .map(|sweep| f64::from(sweep.0))
     };
-    let frame = gait.increment.unsigned_abs();
+    let frame_advance = gait.increment.unsigned_abs();
     let (mut speed, mut change) = (0.0f64, 0.0f64);
     for phase in (0..CYCLE).step_by(CYCLE as usize / 4096) {
-        let [a, b, c] = [phase, phase + frame, phase + 2 * frame].map(sweeps_at);
+        let [first, second, third] =
+            [phase, phase + frame_advance, phase + 2 * frame_advance].map(sweeps_at);
         for servo in 0..4 {
-            speed = speed.max((b[servo] - a[servo]).abs());
-            change = change.max((c[servo] - 2.0 * b[servo] + a[servo]).abs());
+            speed = speed.max((second[servo] - first[servo]).abs());
+            change = change.max((third[servo] - 2.0 * second[servo] + first[servo]).abs());
         }
     }
-    (speed * STEP_PER_FRAME, change * STEP_PER_FRAME)
+    (speed * STEP_SPEED_DEG_PER_S, change * STEP_SPEED_DEG_PER_S)
 }
 
-/// Returns an upper bound of the frames that any command takes: for waking, braking, the longest move at the
-/// slew limit, and gaining pace.
+/// Returns an upper bound of the frames that any command takes: for waking the servos, braking, the longest move at the
+/// slew limit, and acceleration.
 pub fn settling_frames(robot: &Robot) -> u32 {
     let travels = robot.firmware().calibration();
     let ranges = travels.map(|servo| f64::from(servo.travel_max.0) - f64::from(servo.travel_min.0));
-    let farthest = ranges.into_iter().fold(0.0, f64::max);
-    let frames = 1.5 * farthest * STEP_PER_FRAME / robot.speed_limits().slew;
+    let largest_range = ranges.into_iter().fold(0.0, f64::max);
+    let frames = 1.5 * largest_range * STEP_SPEED_DEG_PER_S / robot.speed_limits().slew;
     WAKING_FRAMES + 30 + (1.05 * frames) as u32
 }
 
-/// A robot each frame of which is checked when it is sent.
+/// A robot whose frames are checked as they are sent.
 pub struct CheckedRobot<'a> {
     name: &'a str,
     robot: &'a Robot,
     running: RunningRobot,
-    /// Speed of each servo in the last frame, deg/s.
+    /// The speed of each servo in the last frame, deg/s.
     speeds: [f64; 4],
     /// True if the servos may stop at once in the next frame.
-    may_stop: bool,
+    may_stop_at_once: bool,
     allowed_speed_change: f64,
-    /// The largest change of speed so far, deg/s.
+    /// The largest change of a servo's speed so far, deg/s.
     pub largest_speed_change: f64,
 }
 
 impl<'a> CheckedRobot<'a> {
-    /// Powers a robot on and discards its banner.
-    pub fn new(Named { name, robot }: &'a Named) -> Self {
+    /// Powers a robot on and reads its banner.
+    pub fn new(NamedRobot { name, robot }: &'a NamedRobot) -> Self {
         let mut walker = Self {
             name,
             robot,
             running: RunningRobot::power_on(*robot.firmware()),
             speeds: [0.0; 4],
-            may_stop: false,
+            may_stop_at_once: false,
             allowed_speed_change: max_speed_change(robot),
             largest_speed_change: 0.0,
         };
@@ -115,8 +116,8 @@ impl<'a> CheckedRobot<'a> {
         walker
     }
 
-    /// Returns a robot that is awake and stands.
-    pub fn standing(named: &'a Named) -> Self {
+    /// Powers a robot on and waits until it stands.
+    pub fn standing(named: &'a NamedRobot) -> Self {
         let mut walker = Self::new(named);
         walker.run_frames(WAKING_FRAMES + 1);
         walker
@@ -130,35 +131,35 @@ impl<'a> CheckedRobot<'a> {
         *self.motion().pose()
     }
 
-    /// Reads all output of the console.
+    /// Takes the lines that the console has printed since the last call.
     pub fn take_output_lines(&mut self) -> Vec<String> {
         self.running.read_lines()
     }
 
-    /// Types a line; returns its answer.
+    /// Sends a line and returns its answer.
     pub fn say(&mut self, line: &str) -> String {
         let answer = self.running.send_line(line);
         if ["stop", "rest"].contains(&line) {
-            self.may_stop = true;
+            self.may_stop_at_once = true;
         }
         answer
     }
 
-    /// Types a line that must be accepted.
+    /// Sends a line that the robot must accept.
     pub fn expect_ok(&mut self, line: &str) {
         let answer = self.say(line);
         assert!(answer.starts_with("ok"), "{}: {line}: {answer}", self.name);
     }
 
-    /// Moves to a pose; false if the guard stops the robot on the path.
+    /// Moves to a pose. Returns false if the guard stops the robot on the path.
     pub fn move_to(&mut self, pose: &Pose) -> bool {
         self.expect_ok(&self.pose_command(pose));
         self.run_frames(settling_frames(self.robot));
         self.motion().hazard().is_none()
     }
 
-    /// Returns the command for a pose. The console's hundredths of a degree select the pose's angle step of
-    /// 1/65536 turn or a neighbour of that step.
+    /// Returns the command for a pose. The console takes hundredths of a degree, so an angle of the commanded pose may
+    /// be one step of 1/65536 turn away.
     pub fn pose_command(&self, pose: &Pose) -> String {
         pose_command(angles(self.robot.firmware(), pose))
     }
@@ -170,7 +171,7 @@ impl<'a> CheckedRobot<'a> {
         }
     }
 
-    /// Runs a frame and checks its safety, its pulses and the servos' speeds.
+    /// Runs a frame, checks its safety, its pulses and the servos' speeds, and returns the pulses.
     pub fn run_frame(&mut self) -> Pulses {
         let (name, robot) = (self.name, self.robot);
         let previous_pose = self.pose();
@@ -198,7 +199,7 @@ impl<'a> CheckedRobot<'a> {
         );
         self.check_pulses(&pose, pulses);
 
-        // During a move, the phase is 0. In a gait, the phase is 0 only once per cycle.
+        // The phase is 0 during a move, and only once per cycle in a gait.
         let is_in_gait = motion.phase() != 0;
         let speed_limit = if is_in_gait {
             robot.speed_limits().gait_slew
@@ -206,19 +207,24 @@ impl<'a> CheckedRobot<'a> {
             robot.speed_limits().slew
         };
         // The poses of a gait are rounded, which may add a step.
-        let fastest_speed = f64::from(previous_pose.largest_turn_to(&pose)) * STEP_PER_FRAME;
-        let max_speed = speed_limit + if is_in_gait { STEP_PER_FRAME } else { 0.0 };
+        let fastest_speed = f64::from(previous_pose.largest_turn_to(&pose)) * STEP_SPEED_DEG_PER_S;
+        let max_speed = speed_limit
+            + if is_in_gait {
+                STEP_SPEED_DEG_PER_S
+            } else {
+                0.0
+            };
         assert!(
             fastest_speed <= max_speed + 1e-6,
             "{name}: {fastest_speed} deg/s, limit {speed_limit}"
         );
 
         let speeds: [f64; 4] = std::array::from_fn(|n| {
-            (f64::from(pose.0[n].0) - f64::from(previous_pose.0[n].0)) * STEP_PER_FRAME
+            (f64::from(pose.0[n].0) - f64::from(previous_pose.0[n].0)) * STEP_SPEED_DEG_PER_S
         });
         for (speed, last_speed) in speeds.iter().zip(&self.speeds) {
             let change = (speed - last_speed).abs();
-            if !(self.may_stop || guard_stopped) {
+            if !(self.may_stop_at_once || guard_stopped) {
                 assert!(
                     change <= self.allowed_speed_change,
                     "{name}: {last_speed} and then {speed} deg/s"
@@ -227,11 +233,11 @@ impl<'a> CheckedRobot<'a> {
             }
         }
         self.speeds = speeds;
-        self.may_stop = false;
+        self.may_stop_at_once = false;
         pulses
     }
 
-    /// Checks that the pulses are those that robot.toml gives for the pose, within each servo's travel.
+    /// Checks that the pulses agree with robot.toml for the pose, and lie within each servo's travel.
     fn check_pulses(&self, pose: &Pose, pulses: Pulses) {
         for (n, (servo, width)) in self.robot.servos().iter().zip(pulses.0).enumerate() {
             if width.0 == 0 {
@@ -240,8 +246,8 @@ impl<'a> CheckedRobot<'a> {
             let sweep = f64::from(pose.0[n].0) * 360.0 / 65536.0;
             let expected = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep);
             let error = f64::from(width.0) - expected;
-            // Neutral and product are rounded to half a cycle each, and half a step of the gain
-            // is one cycle at a sweep of half a turn.
+            // The rounding errors are half a cycle for the neutral pulse, half a cycle for the product, and one cycle
+            // for the gain at a sweep of half a turn.
             assert!(
                 error.abs() <= 2.0,
                 "{}: A{} is {error} cycles off",
@@ -275,7 +281,7 @@ pub fn gait_command(gait: &CheckedGait) -> String {
 pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
     let pose_line = |rng: &mut Rng, share: f64| {
         let firmware = robot.firmware();
-        let pose = pose_within(rng, &firmware.calibration(), share);
+        let pose = random_pose_within(rng, &firmware.calibration(), share);
         pose_command(angles(firmware, &pose))
     };
     match rng.u8(..20) {
@@ -289,7 +295,7 @@ pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
     }
 }
 
-/// Returns the robot's activity once a command is complete; `None` for a command that selects no activity.
+/// Returns the robot's activity after a command is complete; `None` for a command that selects no activity.
 pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
     let gait_index = robot
         .gaits()

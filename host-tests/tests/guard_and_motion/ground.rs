@@ -1,24 +1,24 @@
-//! Tests of the travel that the core's pulses cause: converted back to angles and run through the contact
-//! model, they must move the robot as the gait in floating point does.
+//! Tests of the travel that the core's pulses cause. The pulses are converted back to angles for the contact model, and
+//! must move the robot as the gait in floating point does.
 
 use lizard_core::numbers::pose::Pulses;
-use lizard_host_tests::{Named, paper, robots};
+use lizard_host_tests::{NamedRobot, paper_robot, robots};
 use lizard_robot::{CheckedGait, Robot, Travel};
 
 use crate::frames::{CheckedRobot, gait_command, settling_frames};
 
 /// Converts pulse widths in cycles of 62.5 ns to servo angles in the chassis frame, deg.
-fn angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
+fn angles_of_pulses(robot: &Robot, pulses: Pulses) -> [f64; 4] {
     std::array::from_fn(|n| {
         let servo = &robot.servos()[n];
         servo.neutral + servo.sweep(f64::from(pulses.0[n].0) / 16.0)
     })
 }
 
-/// Returns the robot's travel in one cycle, computed from the pulses that the core sends for a gait at a
-/// speed in percent. The cycle begins where the gait's phase is nearest to 0. `None` if the guard stops the
-/// robot on its path to the gait's first pose.
-fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
+/// Returns the robot's travel in one cycle of a gait at a speed in percent, computed from the core's pulses. The cycle
+/// begins at the frame whose phase is nearest to 0. `None` if the guard stops the robot on its path to the gait's first
+/// pose.
+fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     let robot = &named.robot;
     let mut walker = CheckedRobot::standing(named);
     walker.expect_ok(&format!("speed {percent}"));
@@ -27,33 +27,33 @@ fn travel(named: &Named, gait: &CheckedGait, percent: f64) -> Option<Travel> {
     if walker.motion().hazard().is_some() {
         return None;
     }
-    let frames = gait.period() * 50.0 * 100.0 / percent;
-    // The distance of the phase from 0, since the phase of a reversed gait falls.
+    let frames_per_cycle = gait.period() * 50.0 * 100.0 / percent;
+    // The phase of a reversed gait falls, so the distance from 0 in either direction counts.
     let phase_distance = |walker: &CheckedRobot| {
         let phase = i64::from(walker.motion().phase());
         phase.min((1 << 24) - phase)
     };
-    let phase_per_frame = (f64::from(1 << 24) / frames) as i64;
+    let phase_per_frame = (f64::from(1 << 24) / frames_per_cycle) as i64;
     while phase_distance(&walker) > phase_per_frame / 2 + 1 {
         walker.run_frames(1);
     }
-    let mut path = vec![angles(
+    let mut path = vec![angles_of_pulses(
         robot,
         walker.pose().pulses(walker.motion().calibration()),
     )];
-    for _ in 0..frames.ceil() as usize {
-        path.push(angles(robot, walker.run_frame()));
+    for _ in 0..frames_per_cycle.ceil() as usize {
+        path.push(angles_of_pulses(robot, walker.run_frame()));
     }
     // A cycle may end between two frames.
     let last_index = path.len() - 1;
-    let share = frames - frames.ceil() + 1.0;
+    let share = frames_per_cycle - frames_per_cycle.ceil() + 1.0;
     let (previous, last) = (path[last_index - 1], path[last_index]);
     path[last_index] = std::array::from_fn(|n| previous[n] + share * (last[n] - previous[n]));
     Some(robot.predict_travel(path))
 }
 
-/// Asserts that a travel is the expected one: forward to within `tolerance_mm` mm or 1 %, the turn to within
-/// 0.2 deg. An expected value of `None` is not compared.
+/// Asserts that a travel is as expected: the forward travel within `tolerance_mm` or 1 %, the turn within 0.2 deg. An
+/// expected value of `None` is not compared.
 fn assert_travel(
     name: &str,
     travel: Travel,
@@ -81,23 +81,23 @@ fn assert_travel(
 }
 
 #[test]
-fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
+fn the_pulses_of_every_gait_move_the_robot_as_far_as_the_gait_in_floating_point() {
     let mut travel_count = 0;
     // Only some of the random robots, since the contact model is slow.
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
             for percent in [100.0, 20.0] {
-                // At the lower speed, random robots are left out.
+                // Random robots are tested only at full speed.
                 if percent < 100.0 && named.name.starts_with("random") {
                     continue;
                 }
-                let Some(travel) = travel(named, gait, percent) else {
+                let Some(travel) = simulate_travel(named, gait, percent) else {
                     continue;
                 };
                 travel_count += 1;
                 let expected = gait.predict(&named.robot.ground().with_rigid_drive());
                 let name = format!("{}: {} at {percent} %", named.name, gait.name());
-                // On a robot without symmetry, a tenth of a degree may decide which foot sticks.
+                // On a robot without symmetry, a tenth of a degree may decide which foot sticks and which slips.
                 let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
                 assert_travel(&name, travel, tolerance_mm, expected.forward, expected.turn);
             }
@@ -106,20 +106,19 @@ fn the_pulses_of_every_gait_lead_as_far_as_the_gait_in_floating_point() {
     assert!(travel_count > 100);
 }
 
-// The predictions in floating point are compared with independent figures in the tests
-// of crates/robot/.
+// The tests of crates/robot/ compare the predictions in floating point with independent figures.
 #[test]
-fn the_pulses_of_the_papers_gaits_lead_there_within_a_third_of_a_millimetre() {
-    let named = Named {
+fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
+    let named = NamedRobot {
         name: "paper.toml".into(),
-        robot: paper().clone(),
+        robot: paper_robot().clone(),
     };
     let mut decided_count = 0;
-    for gait in paper().gaits() {
-        let expected = gait.predict(&paper().ground().with_rigid_drive());
+    for gait in paper_robot().gaits() {
+        let expected = gait.predict(&paper_robot().ground().with_rigid_drive());
         decided_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for percent in [100.0, 80.0, 50.0, 20.0] {
-            let travel = travel(&named, gait, percent).expect("the way is clear");
+            let travel = simulate_travel(&named, gait, percent).expect("the path is clear");
             assert_travel(gait.name(), travel, 0.3, expected.forward, expected.turn);
         }
     }

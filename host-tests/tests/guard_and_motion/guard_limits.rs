@@ -1,15 +1,15 @@
-//! The guard's limits, each checked to the last bit.
+//! Tests of the guard's limits, each checked to the last bit.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::Hazard;
 use lizard_core::numbers::part::Side;
 use lizard_core::numbers::units::Sine;
-use lizard_host_tests::{Named, robots};
+use lizard_host_tests::{NamedRobot, robots};
 use lizard_robot::Robot;
 
-use crate::truth::{MARGINS, per_mm, sine};
+use crate::truth::{MARGINS, sine, steps_per_mm};
 
-/// The limit that robot.toml gives for each of the ten margins.
+/// Returns the limit of each of the ten margins from robot.toml.
 fn limits(robot: &Robot) -> [f64; 10] {
     let limits = robot.limits();
     std::array::from_fn(|index| match index {
@@ -19,12 +19,12 @@ fn limits(robot: &Robot) -> [f64; 10] {
     })
 }
 
-/// A sine rounded up to Q15.
+/// Rounds a sine up to Q15.
 fn ceil_q15(limit: f64) -> i16 {
     (limit * 32768.0 - 1e-6).ceil() as i16
 }
 
-/// A clearance exactly at the limit of every margin, with both sliders at their maximum length.
+/// Returns a clearance with every margin exactly at its limit and both sliders at their maximum length.
 fn clearance_at_limit(robot: &Robot) -> Clearance {
     Clearance {
         margins: limits(robot).map(|limit| Sine(ceil_q15(limit))),
@@ -36,8 +36,8 @@ fn clearance_at_limit(robot: &Robot) -> Clearance {
 }
 
 #[test]
-fn a_value_at_its_limit_is_safe_and_the_next_one_below_is_named() {
-    for Named { name, robot } in robots() {
+fn a_margin_at_its_limit_is_safe_and_the_next_smaller_one_is_a_hazard() {
+    for NamedRobot { name, robot } in robots() {
         let firmware = robot.firmware();
         assert_eq!(
             clearance_at_limit(robot).first_hazard(firmware),
@@ -45,18 +45,18 @@ fn a_value_at_its_limit_is_safe_and_the_next_one_below_is_named() {
             "{name}"
         );
         for (index, margin) in MARGINS.into_iter().enumerate() {
-            let mut core = clearance_at_limit(robot);
-            let value = Sine(core.margins[index].0 - 1);
-            core.margins[index] = value;
+            let mut clearance = clearance_at_limit(robot);
+            let value = Sine(clearance.margins[index].0 - 1);
+            clearance.margins[index] = value;
             let hazard = Some(Hazard::Margin { margin, value });
-            assert_eq!(core.first_hazard(firmware), hazard, "{name}");
+            assert_eq!(clearance.first_hazard(firmware), hazard, "{name}");
         }
     }
 }
 
 #[test]
-fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
-    for Named { name, robot } in robots() {
+fn a_slider_at_an_end_of_its_stroke_is_safe_and_the_next_length_beyond_is_a_hazard() {
+    for NamedRobot { name, robot } in robots() {
         let firmware = robot.firmware();
         for (index, side) in Side::ALL.into_iter().enumerate() {
             let slider = firmware.slider(side);
@@ -68,9 +68,9 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
                 (max_sq, true),
                 (max_sq + 1, false),
             ] {
-                let mut core = clearance_at_limit(robot);
-                core.slider_lengths_sq[index] = length_sq;
-                let named_side = match core.first_hazard(firmware) {
+                let mut clearance = clearance_at_limit(robot);
+                clearance.slider_lengths_sq[index] = length_sq;
+                let named_side = match clearance.first_hazard(firmware) {
                     None => None,
                     Some(Hazard::Stroke { side, .. }) => Some(side),
                     Some(hazard) => panic!("{name}: {hazard:?}"),
@@ -87,13 +87,13 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_a_hair_beyond_is_named() {
 
 #[test]
 fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
-    for Named { name, robot } in robots() {
-        let core = robot.firmware().limits();
-        let file = robot.limits();
+    for NamedRobot { name, robot } in robots() {
+        let core_limits = robot.firmware().limits();
+        let file_limits = robot.limits();
         for (core, file) in [
-            (core.type2, file.type2),
-            (core.type1, file.type1),
-            (core.leg, file.leg),
+            (core_limits.type2, file_limits.type2),
+            (core_limits.type1, file_limits.type1),
+            (core_limits.leg, file_limits.leg),
         ] {
             assert!(sine(core) >= file - 1e-9, "{name}: {core:?} for {file}");
             assert!(sine(Sine(core.0 - 1)) < file, "{name}: {core:?} for {file}");
@@ -105,9 +105,9 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
         for (side, kinematics_side) in Side::ALL.into_iter().zip(sides) {
             let slider = robot.firmware().slider(side);
             let nominal = robot.lizard().side(kinematics_side).nominal_length;
-            let length_mm = |steps: u16| f64::from(steps) / per_mm(slider.scale);
+            let length_mm = |steps: u16| f64::from(steps) / steps_per_mm(slider.scale);
             let [min_mm, max_mm] =
-                [file.stroke_min, file.stroke_max].map(|travel| nominal + travel);
+                [file_limits.stroke_min, file_limits.stroke_max].map(|travel| nominal + travel);
             assert!(
                 length_mm(slider.stroke_min) >= min_mm - 1e-9,
                 "{name}: {side:?}"

@@ -7,21 +7,22 @@ use lizard_core::numbers::part::Side;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::root::isqrt;
 use lizard_core::numbers::units::Sweep;
-use lizard_host_tests::{Named, rng, robots};
+use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_proof::STEPS_BAND;
 use lizard_robot::Robot;
 
 use crate::truth::{
-    ErrorStatistics, ExactConditions, FIVE_BAR_OF_MARGIN, MARGINS, MIN_TYPE2, angles, any_pose,
-    is_safe, open_end, per_mm, pose_within, sine,
+    ErrorStatistics, ExactConditions, FIVE_BAR_OF_MARGIN, MARGINS, MIN_TYPE2_LIMIT, angles,
+    index_of_open_five_bar, is_safe, random_pose, random_pose_within, sine, steps_per_mm,
 };
 
 /// Number of poses tested on each robot.
-const POSES: usize = 40_000;
-/// Number of pairs of neighbouring poses with a limit between them, tested on each robot.
-const PAIRS: usize = 1500;
+const POSE_COUNT: usize = 40_000;
+/// Number of pairs of neighbouring poses, one on each side of a limit, tested on each robot.
+const PAIR_COUNT: usize = 1500;
 
-/// The guard's errors and decisions for many poses of one robot. A band is the error that the guard may have.
+/// The guard's errors and decisions for many poses of one robot. The band of a condition is the largest error that the
+/// guard may have in this condition.
 #[derive(Default)]
 struct Findings {
     type2: ErrorStatistics,
@@ -30,27 +31,27 @@ struct Findings {
     /// The errors of the strokes, in steps of the side's scale.
     stroke: ErrorStatistics,
     /// The largest error of each margin, in bands.
-    max_margin_errors: [f64; 10],
-    safe: usize,
-    refused: usize,
+    max_margin_error_bands: [f64; 10],
+    safe_count: usize,
+    refused_count: usize,
     /// The number of poses where the guard and floating point decide differently.
-    disagreements: usize,
+    disagreement_count: usize,
     /// The largest distance of such a pose from a limit, in bands.
     max_disagreement_bands: f64,
-    /// The number of times that each of the twelve conditions was named.
+    /// The number of refusals for each of the twelve conditions.
     hazard_counts: [usize; 12],
 }
 
 impl Findings {
     fn add(&mut self, robot: &Robot, pose: &Pose) {
         let firmware = robot.firmware();
-        let core = Clearance::of(firmware, pose);
-        let hazard = core.first_hazard(firmware);
+        let clearance = Clearance::of(firmware, pose);
+        let hazard = clearance.first_hazard(firmware);
         let hazard_index = hazard.map(index_of);
         match hazard_index {
-            None => self.safe += 1,
+            None => self.safe_count += 1,
             Some(index) => {
-                self.refused += 1;
+                self.refused_count += 1;
                 self.hazard_counts[index] += 1;
             }
         }
@@ -58,8 +59,8 @@ impl Findings {
             Ok(truth) => truth,
             Err(fault) => {
                 // The guard checks the head first, so it may name an earlier condition.
-                let end_index =
-                    open_end(&fault).expect("the sliders of these robots always have a length");
+                let end_index = index_of_open_five_bar(&fault)
+                    .expect("the sliders of these robots always have a length");
                 assert!(
                     hazard_index.is_some_and(|index| index <= end_index),
                     "{pose:?}: {fault}, {hazard:?}"
@@ -67,7 +68,7 @@ impl Findings {
                 return;
             }
         };
-        self.compare(robot, &core, &truth);
+        self.compare(robot, &clearance, &truth);
         let distances = truth.distances_from_limits();
         for (distance, is_broken) in distances.into_iter().zip(truth.broken) {
             assert!(
@@ -77,7 +78,7 @@ impl Findings {
         }
         let smallest_distance = distances.into_iter().fold(f64::INFINITY, f64::min);
         if hazard.is_none() != (smallest_distance >= 0.0) {
-            self.disagreements += 1;
+            self.disagreement_count += 1;
             self.max_disagreement_bands = self.max_disagreement_bands.max(smallest_distance.abs());
         }
         assert!(
@@ -87,31 +88,32 @@ impl Findings {
         let Some(hazard_index) = hazard_index else {
             return;
         };
-        // The named condition is broken, and no condition that the guard checks earlier.
+        // The named condition is broken, and all conditions that the guard checks earlier are kept.
         assert!(
             distances[hazard_index] <= 1.0,
             "{pose:?}: {hazard:?}, {truth:?}"
         );
-        let are_earlier_kept = distances[..hazard_index]
+        let are_earlier_conditions_kept = distances[..hazard_index]
             .iter()
             .all(|distance| *distance >= -1.0);
         assert!(
-            are_earlier_kept,
+            are_earlier_conditions_kept,
             "{pose:?}: {hazard:?} comes too early, {truth:?}"
         );
     }
 
     /// Compares the guard's margins and strokes with those in floating point.
-    fn compare(&mut self, robot: &Robot, core: &Clearance, truth: &ExactConditions) {
-        for (index, (value, expected)) in core.margins.iter().zip(truth.margins).enumerate() {
+    fn compare(&mut self, robot: &Robot, clearance: &Clearance, truth: &ExactConditions) {
+        for (index, (value, expected)) in clearance.margins.iter().zip(truth.margins).enumerate() {
             let five_bar = FIVE_BAR_OF_MARGIN.get(index).copied();
             if let Some(five_bar) = five_bar
-                && (truth.margins[five_bar] < MIN_TYPE2 || truth.is_at_crossing(five_bar))
+                && (truth.margins[five_bar] < MIN_TYPE2_LIMIT || truth.is_at_crossing(five_bar))
             {
-                // So near a type-2 singularity, the guard only has to detect that the margin is small.
-                let max_margin = MIN_TYPE2 + truth.bands[five_bar];
+                // This near to a type-2 singularity, the guard only has to detect that the margin is small.
+                let max_margin = MIN_TYPE2_LIMIT + truth.bands[five_bar];
                 assert!(
-                    truth.is_at_crossing(five_bar) || sine(core.margins[five_bar]) < max_margin,
+                    truth.is_at_crossing(five_bar)
+                        || sine(clearance.margins[five_bar]) < max_margin,
                     "{truth:?}"
                 );
                 continue;
@@ -123,16 +125,16 @@ impl Findings {
             };
             let error = sine(*value) - expected;
             statistics.add(error);
-            self.max_margin_errors[index] =
-                self.max_margin_errors[index].max(error.abs() / truth.bands[index]);
+            self.max_margin_error_bands[index] =
+                self.max_margin_error_bands[index].max(error.abs() / truth.bands[index]);
         }
         for (side, (length_sq, travel)) in Side::ALL
             .into_iter()
-            .zip(core.slider_lengths_sq.into_iter().zip(truth.travels))
+            .zip(clearance.slider_lengths_sq.into_iter().zip(truth.travels))
         {
             let slider = robot.firmware().slider(side);
             let steps = f64::from(length_sq).sqrt() - f64::from(slider.nominal_length);
-            self.stroke.add(steps - travel * per_mm(slider.scale));
+            self.stroke.add(steps - travel * steps_per_mm(slider.scale));
         }
     }
 
@@ -144,17 +146,17 @@ impl Findings {
             self.type1,
             self.leg,
             self.stroke,
-            self.safe,
-            self.refused,
-            self.disagreements,
+            self.safe_count,
+            self.refused_count,
+            self.disagreement_count,
             self.max_disagreement_bands,
-            self.max_margin_errors.into_iter().fold(0.0, f64::max),
+            self.max_margin_error_bands.into_iter().fold(0.0, f64::max),
             self.hazard_counts
         );
-        for (margin, deviation) in MARGINS.iter().zip(self.max_margin_errors) {
+        for (margin, error_bands) in MARGINS.iter().zip(self.max_margin_error_bands) {
             assert!(
-                deviation <= 1.0,
-                "{name}: {margin:?} is {deviation} bands off"
+                error_bands <= 1.0,
+                "{name}: {margin:?} is {error_bands} bands off"
             );
         }
         assert!(
@@ -162,7 +164,10 @@ impl Findings {
             "{name}: a stroke is {} steps off",
             self.stroke
         );
-        assert!(self.safe > 0 && self.refused > 0, "{name} has no limit");
+        assert!(
+            self.safe_count > 0 && self.refused_count > 0,
+            "{name} has no limit"
+        );
     }
 }
 
@@ -178,17 +183,17 @@ fn index_of(hazard: Hazard) -> usize {
     }
 }
 
-/// Returns random poses in the full travel and nearer to neutral, where the border of the safe poses lies.
+/// Returns random poses: some in the full travel, others nearer to neutral, where the limits of the safe poses lie.
 fn random_poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
     let calibration = robot.firmware().calibration();
     let shares = [1.0, 0.7, 0.4, 0.2];
-    (0..POSES).map(move |n| pose_within(rng, &calibration, shares[n % shares.len()]))
+    (0..POSE_COUNT).map(move |n| random_pose_within(rng, &calibration, shares[n % shares.len()]))
 }
 
 #[test]
 fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
     let mut hazard_counts = [0; 12];
-    for (n, Named { name, robot }) in robots().iter().enumerate() {
+    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut findings = Findings::default();
         for pose in random_poses(&mut rng(100 + n as u64), robot) {
             findings.add(robot, &pose);
@@ -205,13 +210,13 @@ fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
 }
 
 #[test]
-fn of_every_robot_the_guards_decision_changes_at_the_limit_of_floating_point() {
-    for (n, Named { name, robot }) in robots().iter().enumerate() {
+fn the_guards_decision_changes_at_the_limit_of_floating_point() {
+    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut rng = rng(200 + n as u64);
         let firmware = robot.firmware();
         let mut findings = Findings::default();
-        while findings.refused < PAIRS {
-            let unsafe_pose = any_pose(&mut rng, &firmware.calibration());
+        while findings.refused_count < PAIR_COUNT {
+            let unsafe_pose = random_pose(&mut rng, &firmware.calibration());
             if is_safe(firmware, &unsafe_pose) {
                 continue;
             }
@@ -223,8 +228,7 @@ fn of_every_robot_the_guards_decision_changes_at_the_limit_of_floating_point() {
     }
 }
 
-/// Returns two neighbouring poses on the path from neutral to an unsafe pose: a safe one, then an unsafe
-/// one.
+/// Returns two neighbouring poses on the path from neutral to an unsafe pose: a safe pose, then an unsafe pose.
 fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
     let pose_at = |share: u32| {
         Pose(
@@ -246,39 +250,43 @@ fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
 }
 
 #[test]
-fn a_reason_carries_the_value_that_broke_the_limit() {
-    let mut reason_counts = [0; 2];
-    for (n, Named { name, robot }) in robots().iter().enumerate() {
+fn a_hazard_contains_the_value_that_broke_the_limit() {
+    let mut hazard_counts = [0; 2];
+    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
         for pose in random_poses(&mut rng(300 + n as u64), robot).take(2000) {
-            let core = Clearance::of(robot.firmware(), &pose);
-            match core.first_hazard(robot.firmware()) {
+            let clearance = Clearance::of(robot.firmware(), &pose);
+            match clearance.first_hazard(robot.firmware()) {
                 None => {}
                 Some(Hazard::Margin { margin, value }) => {
                     let index = MARGINS.iter().position(|known| *known == margin);
-                    assert_eq!(value, core.margins[index.expect("one of ten")], "{name}");
-                    reason_counts[0] += 1;
+                    assert_eq!(
+                        value,
+                        clearance.margins[index.expect("one of ten")],
+                        "{name}"
+                    );
+                    hazard_counts[0] += 1;
                 }
                 Some(Hazard::Travel(_)) => unreachable!("a clearance knows no travel"),
                 Some(Hazard::Stroke { side, length }) => {
                     assert_eq!(
                         length,
-                        isqrt(core.slider_lengths_sq[side as usize]),
+                        isqrt(clearance.slider_lengths_sq[side as usize]),
                         "{name}"
                     );
-                    reason_counts[1] += 1;
+                    hazard_counts[1] += 1;
                 }
             }
         }
     }
     assert!(
-        reason_counts.iter().all(|count| *count > 100),
-        "{reason_counts:?}"
+        hazard_counts.iter().all(|count| *count > 100),
+        "{hazard_counts:?}"
     );
 }
 
 #[test]
-fn the_smallest_margin_is_the_one_of_kinematics() {
-    for (n, Named { name, robot }) in robots().iter().enumerate() {
+fn the_smallest_margin_agrees_with_kinematics() {
+    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut safe_count = 0;
         for pose in random_poses(&mut rng(400 + n as u64), robot).take(10_000) {
             if !is_safe(robot.firmware(), &pose) {
@@ -301,14 +309,14 @@ fn the_smallest_margin_is_the_one_of_kinematics() {
 }
 
 #[test]
-fn the_guard_overflows_at_no_pose() {
-    // The poses include those that no servo reaches: the arithmetic must not overflow for any pose.
-    for (n, Named { robot, .. }) in robots().iter().enumerate() {
+fn the_guards_arithmetic_overflows_at_no_pose() {
+    // The poses include poses that no servo reaches.
+    for (n, NamedRobot { robot, .. }) in robots().iter().enumerate() {
         let mut rng = rng(500 + n as u64);
         let mut findings = Findings::default();
         for _ in 0..10_000 {
             findings.add(robot, &Pose([(); 4].map(|()| Sweep(rng.i16(..)))));
         }
-        assert!(findings.refused > 0);
+        assert!(findings.refused_count > 0);
     }
 }

@@ -1,29 +1,29 @@
-//! Tests of transitions from any motion to any other, for every robot: every frame keeps the limits, and
-//! every command completes.
+//! Tests of transitions from any motion to any other, for every robot: every frame keeps the limits, and every command
+//! completes.
 
 use lizard_core::motion::Activity;
 use lizard_core::numbers::pose::Pose;
-use lizard_host_tests::{Named, rng, robots};
+use lizard_host_tests::{NamedRobot, rng, robots};
 
 use crate::frames::{
     CheckedRobot, WAKING_FRAMES, final_activity, max_speed_change, random_command, settling_frames,
 };
-use crate::truth::safe_pose;
+use crate::truth::random_safe_pose;
 
 /// Number of random dialogues with each robot.
-const DIALOGUES: u64 = 30;
+const DIALOGUE_COUNT: u64 = 30;
 
 #[test]
-fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
+fn no_sequence_of_commands_makes_a_frame_unsafe_too_fast_or_too_sudden() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(1000 + n as u64);
-        let (mut done_count, mut refused_count, mut largest_change) = (0, 0, 0.0f64);
-        for _ in 0..DIALOGUES {
+        let (mut accepted_count, mut refused_count, mut largest_change) = (0, 0, 0.0f64);
+        for _ in 0..DIALOGUE_COUNT {
             let mut walker = CheckedRobot::new(named);
             for _ in 0..12 {
                 let answer = walker.say(&random_command(&mut rng, &named.robot));
                 *(if answer.starts_with("ok") {
-                    &mut done_count
+                    &mut accepted_count
                 } else {
                     &mut refused_count
                 }) += 1;
@@ -32,21 +32,22 @@ fn no_frame_is_too_fast_too_sudden_or_unsafe_for_any_commands() {
             largest_change = largest_change.max(walker.largest_speed_change);
         }
         println!(
-            "{}: {done_count} commands done, {refused_count} refused; speed changes by at most {largest_change:.0} of {:.0} deg/s",
+            "{}: {accepted_count} commands accepted, {refused_count} refused; \
+             speed changes by at most {largest_change:.0} of {:.0} deg/s",
             named.name,
             max_speed_change(&named.robot)
         );
-        assert!(done_count > 100 && refused_count > 0, "{}", named.name);
+        assert!(accepted_count > 100 && refused_count > 0, "{}", named.name);
     }
 }
 
 #[test]
-fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
+fn every_command_completes_unless_the_guard_reports_a_hazard() {
     for (n, named) in robots().iter().enumerate() {
-        let Named { name, robot } = named;
+        let NamedRobot { name, robot } = named;
         let mut rng = rng(2000 + n as u64);
         let mut arrived_count = 0;
-        for _ in 0..3 * DIALOGUES {
+        for _ in 0..3 * DIALOGUE_COUNT {
             let mut walker = CheckedRobot::new(named);
             for _ in 0..3 {
                 walker.say(&random_command(&mut rng, robot));
@@ -85,18 +86,18 @@ fn every_command_comes_to_its_end_or_the_guard_says_why_not() {
             arrived_count += 1;
         }
         assert!(
-            arrived_count > DIALOGUES,
+            arrived_count > DIALOGUE_COUNT,
             "{name}: only {arrived_count} arrived"
         );
     }
 }
 
 #[test]
-fn a_command_that_is_refused_changes_nothing() {
+fn a_refused_command_changes_nothing() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(3000 + n as u64);
         let mut refused_count = 0;
-        for _ in 0..DIALOGUES {
+        for _ in 0..DIALOGUE_COUNT {
             let (mut tested, mut reference) = (CheckedRobot::new(named), CheckedRobot::new(named));
             for _ in 0..8 {
                 let command = random_command(&mut rng, &named.robot);
@@ -123,15 +124,15 @@ fn a_command_that_is_refused_changes_nothing() {
 }
 
 #[test]
-fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
+fn in_a_move_all_servos_have_turned_by_the_same_share_and_arrive_together() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(4000 + n as u64);
         let mut arrived_count = 0;
-        for _ in 0..DIALOGUES {
-            let goal = safe_pose(&mut rng, named.robot.firmware());
+        for _ in 0..DIALOGUE_COUNT {
+            let goal = random_safe_pose(&mut rng, named.robot.firmware());
             let mut walker = CheckedRobot::standing(named);
             if !walker.say(&walker.pose_command(&goal)).starts_with("ok") {
-                continue; // rounding to a hundredth of a degree put it beyond a limit
+                continue; // rounded to hundredths of a degree, the pose is beyond a limit
             }
             let mut poses = vec![walker.pose()];
             while walker.motion().activity() == Activity::Pose && poses.len() < 1000 {
@@ -165,46 +166,50 @@ fn in_a_move_all_servos_do_the_same_share_of_their_ways_and_arrive_together() {
 }
 
 #[test]
-fn servos_wake_one_after_another_where_they_were_left() {
+fn servos_wake_one_after_another_in_the_pose_before_the_rest() {
     for (n, named) in robots().iter().enumerate() {
         let calibration = named.robot.firmware().calibration();
         let mut walker = CheckedRobot::new(named);
-        for held_pose in [
+        for pose_before_rest in [
             Pose::NEUTRAL,
-            safe_pose(&mut rng(5000 + n as u64), named.robot.firmware()),
+            random_safe_pose(&mut rng(5000 + n as u64), named.robot.firmware()),
         ] {
-            if held_pose != Pose::NEUTRAL {
-                walker.say(&walker.pose_command(&held_pose));
+            if pose_before_rest != Pose::NEUTRAL {
+                walker.say(&walker.pose_command(&pose_before_rest));
                 walker.run_frames(settling_frames(&named.robot));
                 walker.expect_ok("rest");
                 walker.run_frames(10);
                 walker.expect_ok("stand");
             }
             let held_pose = walker.pose();
-            let mut awake_since = [0; 4];
+            let mut first_frames = [0; 4];
             for frame in 1..=WAKING_FRAMES {
                 for (servo, width) in walker.run_frame().0.into_iter().enumerate() {
-                    if width.0 > 0 && awake_since[servo] == 0 {
-                        awake_since[servo] = frame;
+                    if width.0 > 0 && first_frames[servo] == 0 {
+                        first_frames[servo] = frame;
                     }
                     let expected = calibration[servo].width(held_pose.0[servo]);
                     assert!(width.0 == 0 || width == expected, "{}", named.name);
-                    assert_eq!(width.0 > 0, awake_since[servo] > 0, "awake for good");
+                    assert_eq!(
+                        width.0 > 0,
+                        first_frames[servo] > 0,
+                        "a servo that is awake stays awake"
+                    );
                 }
             }
             // The servos wake a tenth of a second apart.
-            assert_eq!(awake_since, [5, 10, 15, 20], "{}", named.name);
+            assert_eq!(first_frames, [5, 10, 15, 20], "{}", named.name);
             walker.run_frames(settling_frames(&named.robot));
         }
     }
 }
 
 #[test]
-fn stop_freezes_and_rest_silences_the_very_next_frame_and_a_gait_restarts() {
+fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_start_again() {
     for (n, named) in robots().iter().enumerate() {
         let mut rng = rng(6000 + n as u64);
         let robot = &named.robot;
-        for _ in 0..DIALOGUES {
+        for _ in 0..DIALOGUE_COUNT {
             let mut walker = CheckedRobot::standing(named);
             let gait_index = rng.usize(..robot.gaits().len());
             walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait_index]));

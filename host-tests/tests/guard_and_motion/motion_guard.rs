@@ -5,34 +5,34 @@ use lizard_core::guard::clearance::Clearance;
 use lizard_core::motion::Activity;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::Sweep;
-use lizard_host_tests::{Named, rng, robots};
+use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
 use crate::frames::{CheckedRobot, gait_command, settling_frames};
-use crate::truth::{Verdict, angles, is_safe, pose_within};
+use crate::truth::{Verdict, angles, is_safe, random_pose_within};
 
-/// Number of random pairs tried for each robot, since some robots have no unsafe path between safe poses.
-const TRIES: usize = 6000;
-/// Largest number of unsafe paths that are followed for each robot.
-const PATHS: usize = 12;
+/// Number of random pairs of poses tried for each robot. Some robots have no unsafe path between safe poses.
+const TRY_COUNT: usize = 6000;
+/// Maximum number of unsafe paths tested for each robot.
+const MAX_PATH_COUNT: usize = 12;
 
-/// Returns up to [`PATHS`] pairs of safe poses whose straight path is unsafe by floating point.
+/// Returns up to [`MAX_PATH_COUNT`] pairs of safe poses whose straight path is unsafe in floating point.
 fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let calibration = robot.firmware().calibration();
     let pose_near_limit = |rng: &mut Rng| {
-        // Two cranks of one five-bar or of one side near a limit, the others at neutral.
+        // Two cranks of one five-bar or of one side are near a limit; the other two are at neutral.
         let [a, b] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
-        let random_pose = pose_within(rng, &calibration, 1.0);
+        let random_pose = random_pose_within(rng, &calibration, 1.0);
         let mut pose = Pose::NEUTRAL;
         (pose.0[a], pose.0[b]) = (random_pose.0[a], random_pose.0[b]);
         let mut share = 256;
-        while !is_safe(robot.firmware(), &shrink(&pose, share)) {
+        while !is_safe(robot.firmware(), &scale_pose(&pose, share)) {
             share -= 4;
         }
-        shrink(&pose, share)
+        scale_pose(&pose, share)
     };
     let mut pairs = Vec::new();
-    for _ in 0..TRIES {
+    for _ in 0..TRY_COUNT {
         let (from, to) = (pose_near_limit(rng), pose_near_limit(rng));
         let [from_sweeps, to_sweeps] =
             [from, to].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
@@ -46,28 +46,29 @@ fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
         if (1..50).step_by(4).any(is_unsafe_at) {
             pairs.push([from, to]);
         }
-        if pairs.len() == PATHS {
+        if pairs.len() == MAX_PATH_COUNT {
             break;
         }
     }
     pairs
 }
 
-fn shrink(pose: &Pose, share: i32) -> Pose {
+/// Returns a pose with every sweep multiplied by `share_256` / 256.
+fn scale_pose(pose: &Pose, share_256: i32) -> Pose {
     Pose(
         pose.0
-            .map(|sweep| Sweep((i32::from(sweep.0) * share / 256) as i16)),
+            .map(|sweep| Sweep((i32::from(sweep.0) * share_256 / 256) as i16)),
     )
 }
 
 #[test]
-fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
+fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
     let mut held_count = 0;
     for (n, named) in robots().iter().enumerate() {
-        let Named { name, robot } = named;
+        let NamedRobot { name, robot } = named;
         for [from, to] in pairs_with_unsafe_path(&mut rng(7000 + n as u64), robot) {
             let mut walker = CheckedRobot::standing(named);
-            // Rounding to a hundredth of a degree may put the command beyond the limit.
+            // Rounded to hundredths of a degree, the pose may be beyond a limit.
             if !walker.say(&walker.pose_command(&from)).starts_with("ok") {
                 continue;
             }
@@ -78,8 +79,9 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
                 continue;
             }
             let from = walker.pose();
-            walker.run_frames(settling_frames(robot)); // checks that every frame is safe
-            // A fast move may pass a narrow unsafe stretch between two frames.
+            // Also checks that every frame is safe.
+            walker.run_frames(settling_frames(robot));
+            // A fast move may cross a narrow unsafe region between two frames.
             let Some(hazard) = walker.motion().hazard() else {
                 assert!(walker.pose().largest_turn_to(&to) <= 1, "{name}");
                 continue;
@@ -92,7 +94,7 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
                 printed_lines[0].starts_with("# held in the last safe pose: "),
                 "{printed_lines:?}"
             );
-            // The cause lies on the rest of the path.
+            // The reported hazard lies ahead on the path.
             assert!(
                 breaks_condition_ahead(robot.firmware(), from, to, walker.pose(), hazard),
                 "{name}: {hazard:?}"
@@ -100,7 +102,10 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             let pose = walker.pose();
             walker.run_frames(20);
             assert_eq!(walker.pose(), pose, "{name}");
-            assert!(walker.take_output_lines().is_empty(), "{name}: told once");
+            assert!(
+                walker.take_output_lines().is_empty(),
+                "{name}: reported once"
+            );
             assert!(walker.say("status").contains(" guard=held "), "{name}");
             // The robot can move back, unless the guard stops it again.
             assert!(
@@ -112,11 +117,11 @@ fn the_last_safe_pose_is_held_and_the_reason_is_reported_once() {
             }
         }
     }
-    println!("{held_count} moves were stopped on their way");
+    println!("{held_count} moves were stopped on their path");
     assert!(held_count >= 10);
 }
 
-/// True if the rest of the path breaks the condition that a hazard names.
+/// True if the rest of the path from the held pose breaks the condition that a hazard names.
 fn breaks_condition_ahead(
     firmware: &CoreRobot,
     from: Pose,
@@ -145,8 +150,8 @@ fn breaks_condition_ahead(
 }
 
 #[test]
-fn a_gait_that_is_under_way_never_meets_the_guard() {
-    let (mut walked_count, mut barred_count) = (0, 0);
+fn a_running_gait_is_never_stopped_by_the_guard() {
+    let (mut walked_count, mut blocked_count) = (0, 0);
     for named in robots() {
         for gait in named.robot.gaits() {
             let mut walker = CheckedRobot::standing(named);
@@ -154,8 +159,8 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
             // The path to the gait's first pose may contain an unsafe pose.
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
-                println!("{}: the way to {} is barred", named.name, gait.name());
-                barred_count += 1;
+                println!("{}: the path to {} is blocked", named.name, gait.name());
+                blocked_count += 1;
                 continue;
             }
             walked_count += 1;
@@ -170,7 +175,7 @@ fn a_gait_that_is_under_way_never_meets_the_guard() {
         }
     }
     assert!(
-        walked_count > 10 * barred_count,
-        "{walked_count} gaits walked, {barred_count} barred"
+        walked_count > 10 * blocked_count,
+        "{walked_count} gaits walked, {blocked_count} blocked"
     );
 }

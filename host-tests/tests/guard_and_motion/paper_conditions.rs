@@ -1,5 +1,5 @@
-//! Tests that show why the guard does not use the singularity conditions printed in the paper:
-//! sin(theta2 + theta3) = 0, sin(theta6 + theta7) = 0 for the tail, and sin(2 theta11) = 0.
+//! Tests that show why the guard does not use the singularity conditions printed in the paper: sin(theta2 + theta3) = 0
+//! for the head, sin(theta6 + theta7) = 0 for the tail, and sin(2 theta11) = 0 for the left side.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -7,15 +7,15 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::part::End;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Sweep};
-use lizard_host_tests::paper;
+use lizard_host_tests::paper_robot;
 
 use crate::truth::{angles, is_safe};
 
-/// The head's crank angles where the two crank tips coincide, deg. Only there do the
-/// couplers fold onto each other, and the head swings freely.
-const CRANK_TIPS_COINCIDE: [f64; 2] = [70.52878, 109.47122];
+/// The head's crank angles at which the two crank tips coincide, deg. This is the real singularity: the couplers lie on
+/// each other, and the head can swing freely.
+const SINGULAR_CRANK_ANGLES: [f64; 2] = [70.52878, 109.47122];
 
-/// A guard built on the printed conditions.
+/// The values of the conditions printed in the paper, at one pose.
 struct PrintedConditions {
     /// |sin(theta2 + theta3)|.
     head: f64,
@@ -27,9 +27,9 @@ struct PrintedConditions {
 
 impl PrintedConditions {
     fn of(pose: &Pose) -> Self {
-        let solution = paper()
+        let solution = paper_robot()
             .lizard()
-            .solve(&angles(paper().firmware(), pose).into())
+            .solve(&angles(paper_robot().firmware(), pose).into())
             .expect("the loops close");
         let abs_sine = |degrees: f64| degrees.to_radians().sin().abs();
         Self {
@@ -39,8 +39,9 @@ impl PrintedConditions {
         }
     }
 
-    fn stops_robot(&self) -> bool {
-        let limit = paper().limits().type2;
+    /// True if a guard on these conditions would refuse the pose.
+    fn are_broken(&self) -> bool {
+        let limit = paper_robot().limits().type2;
         self.head < limit || self.tail < limit || self.left < limit
     }
 }
@@ -49,75 +50,75 @@ fn pose_with_head_at(theta1: f64, theta4: f64) -> Pose {
     let mut pose = Pose::NEUTRAL;
     for (servo, degrees) in [theta1, theta4].into_iter().enumerate() {
         let centideg = (100.0 * degrees).round() as i32;
-        let neutral = paper().firmware().neutral_angles()[servo];
+        let neutral = paper_robot().firmware().neutral_angles()[servo];
         pose.0[servo] = neutral.sweep_to(Angle::from_centideg(centideg));
     }
     pose
 }
 
 #[test]
-fn the_conditions_printed_in_the_paper_would_stop_the_robot_at_home() {
-    let home = PrintedConditions::of(&Pose::NEUTRAL);
-    assert!(home.head < 1e-3 && home.tail < 1e-3 && home.left < 1e-3);
-    assert!(home.stops_robot());
-    assert!(is_safe(paper().firmware(), &Pose::NEUTRAL));
+fn the_conditions_printed_in_the_paper_would_refuse_the_neutral_pose() {
+    let conditions = PrintedConditions::of(&Pose::NEUTRAL);
+    assert!(conditions.head < 1e-3 && conditions.tail < 1e-3 && conditions.left < 1e-3);
+    assert!(conditions.are_broken());
+    assert!(is_safe(paper_robot().firmware(), &Pose::NEUTRAL));
 }
 
 #[test]
-fn the_condition_printed_in_the_paper_calls_every_symmetric_head_singular() {
-    let mut stopped_count = 0;
+fn the_condition_printed_in_the_paper_refuses_every_symmetric_pose_of_the_head() {
+    let mut safe_count = 0;
     for sweep in -4000..4000 {
         let pose = Pose([sweep, -sweep, 0, 0].map(Sweep));
-        if is_safe(paper().firmware(), &pose) {
+        if is_safe(paper_robot().firmware(), &pose) {
             // Neutral angles are rounded to the core's step of 0.0055 deg.
             assert!(PrintedConditions::of(&pose).head < 1e-3, "{sweep}");
-            stopped_count += 1;
+            safe_count += 1;
         }
     }
-    assert!(
-        stopped_count > 5000,
-        "{stopped_count} symmetric poses are safe"
-    );
+    assert!(safe_count > 5000, "{safe_count} symmetric poses are safe");
 }
 
 #[test]
 fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
-    let firmware = paper().firmware();
+    let firmware = paper_robot().firmware();
     for id in GaitId::all(firmware.gait_count()) {
         let gait = firmware.gait(id);
         let stopped_count = (0..256u32)
-            .filter(|n| PrintedConditions::of(&gait.pose(firmware.waves(), n << 16)).stops_robot())
+            .filter(|n| PrintedConditions::of(&gait.pose(firmware.waves(), n << 16)).are_broken())
             .count();
         assert!(stopped_count > 64, "{id:?}: {stopped_count} of 256");
     }
 }
 
 #[test]
-fn the_papers_condition_misses_the_real_singularity_and_the_guard_does_not() {
+fn the_papers_condition_accepts_the_real_singularity_and_the_guard_refuses_it() {
     let mut largest_sine = 0.0f64;
     for direction_deg in 0..360 {
-        let (dy, dx) = f64::from(direction_deg).to_radians().sin_cos();
-        let pose = pose_with_head_at(CRANK_TIPS_COINCIDE[0] + dx, CRANK_TIPS_COINCIDE[1] + dy);
+        let (delta4, delta1) = f64::from(direction_deg).to_radians().sin_cos();
+        let pose = pose_with_head_at(
+            SINGULAR_CRANK_ANGLES[0] + delta1,
+            SINGULAR_CRANK_ANGLES[1] + delta4,
+        );
         largest_sine = largest_sine.max(PrintedConditions::of(&pose).head);
         assert_eq!(
             refused_margin(&pose),
             Some(Margin::Type2(End::Head)),
-            "a degree beside it"
+            "a degree from the singularity"
         );
     }
     println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {largest_sine:.3}");
     assert!(largest_sine > 0.95);
-    // The guard also refuses the pose exactly at the singularity, and its mirror image in the tail.
-    let head = pose_with_head_at(CRANK_TIPS_COINCIDE[0], CRANK_TIPS_COINCIDE[1]);
+    // The guard also refuses the singularity itself, and the same singularity of the tail.
+    let head = pose_with_head_at(SINGULAR_CRANK_ANGLES[0], SINGULAR_CRANK_ANGLES[1]);
     assert_eq!(refused_margin(&head), Some(Margin::Type2(End::Head)));
     let Pose([a1, a2, ..]) = head;
     let tail = Pose([Sweep(0), Sweep(0), Sweep(-a2.0), Sweep(-a1.0)]);
     assert_eq!(refused_margin(&tail), Some(Margin::Type2(End::Tail)));
 }
 
-/// Returns the margin that the guard finds too small; `None` if it finds none.
+/// Returns the margin for which the guard refuses a pose; `None` if it refuses no margin.
 fn refused_margin(pose: &Pose) -> Option<Margin> {
-    let firmware = paper().firmware();
+    let firmware = paper_robot().firmware();
     match Clearance::of(firmware, pose).first_hazard(firmware) {
         Some(Hazard::Margin { margin, .. }) => Some(margin),
         _ => None,

@@ -1,5 +1,5 @@
-//! Expected values in floating point, without the core: every condition of a safe pose, computed
-//! by lizard-kinematics at exactly the angles that the core represents.
+//! Expected values in floating point, without the core: every condition of a safe pose, computed by lizard-kinematics
+//! at the exact angles of the core's pose.
 
 use std::fmt;
 
@@ -14,12 +14,10 @@ use lizard_kinematics::{Check, Infeasible, Limits, Part};
 use lizard_proof::STEPS_BAND;
 use lizard_robot::{CoreRobot, Robot};
 
-/// Largest error of a margin, a sine, from the guard's arithmetic. The rounding of lengths adds to this
-/// error.
+/// Maximum error of a margin, a sine, due to the guard's arithmetic. The rounding of lengths adds to this error.
 pub const MARGIN_BAND: f64 = 0.002;
-/// The smallest type-2 limit that robot.toml may set. If a margin is smaller, the guard only has to
-/// detect that.
-pub const MIN_TYPE2: f64 = 0.1;
+/// The smallest type-2 limit that robot.toml may set. Below it, the guard only has to detect that a margin is small.
+pub const MIN_TYPE2_LIMIT: f64 = 0.1;
 
 /// The ten margins in the order in which the guard checks them.
 pub const MARGINS: [Margin; 10] = [
@@ -35,7 +33,7 @@ pub const MARGINS: [Margin; 10] = [
     Margin::Leg(Servo::A4),
 ];
 
-/// The five-bar of each of the six margins that are not a leg's: 0 is the head, 1 the tail.
+/// The five-bar of each of the first six margins: 0 is the head, 1 the tail. The other four margins are those of legs.
 pub const FIVE_BAR_OF_MARGIN: [usize; 6] = [0, 1, 0, 0, 1, 1];
 
 /// Converts an angle of the core to degrees, 0..360.
@@ -49,11 +47,11 @@ pub fn sine(margin: Sine) -> f64 {
 }
 
 /// Returns the core's length steps per millimetre.
-pub fn per_mm(scale: Scale) -> f64 {
+pub fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// Returns the chassis angles of a pose in degrees, exactly as the core represents them.
+/// Returns the exact chassis angles of the core's pose, deg.
 pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral_angles()).map(degrees)
 }
@@ -61,28 +59,28 @@ pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
 /// The values of every safety condition at a pose, computed in floating point.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactConditions {
-    /// Sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2: negative for
-    /// crossed crank tips.
+    /// Sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2, which is negative for crossed crank
+    /// tips.
     pub margins: [f64; 10],
     /// Slider travel from nominal, mm.
     pub travels: [f64; 2],
     /// K2 of head and tail, mm.
     pub k2: [f64; 2],
-    /// True for each condition that is broken according to lizard-kinematics. Crossed crank tips
-    /// count as a broken type-2 margin.
+    /// True for each condition that is broken according to lizard-kinematics. Crossed crank tips count as a broken
+    /// type-2 margin.
     pub broken: [bool; 12],
     limits: Limits,
-    /// The largest error that the guard may have in each condition, its band: ten margins, then in mm the left
+    /// The band of each condition, which is the maximum error that the guard may have: ten margins, then in mm the left
     /// stroke, the right stroke, and K2 of head and tail.
     pub bands: [f64; 14],
 }
 
-/// The verdict on a pose, undecided within the error band of a limit.
+/// The verdict on a pose, which is undecided within the band of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Clear of every limit by more than the band.
+    /// Within every limit by more than its band.
     Safe,
-    /// Beyond some limit by more than the band.
+    /// Beyond a limit by more than its band.
     Unsafe,
     /// Too near to a limit to decide.
     Undecided,
@@ -104,8 +102,8 @@ impl ExactConditions {
             *type2 = type2.copysign(k2);
         }
         let firmware = robot.firmware();
-        let side_band = |side| STEPS_BAND / per_mm(firmware.slider(side).scale);
-        let end_band = |end| STEPS_BAND / per_mm(firmware.five_bar(end).bars().scale());
+        let side_band = |side| STEPS_BAND / steps_per_mm(firmware.slider(side).scale);
+        let end_band = |end| STEPS_BAND / steps_per_mm(firmware.five_bar(end).bars().scale());
         let [head, tail] =
             [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(end, five_bar)| {
                 five_bar_bands(
@@ -146,8 +144,8 @@ impl ExactConditions {
         })
     }
 
-    /// Returns the distance of each margin, then of each stroke, from its limit, in bands, positive where
-    /// safe. As in the guard, crossed crank tips break the type-2 limit.
+    /// Returns the distance of each margin, then of each stroke, from its limit, in bands. Positive distances are safe.
+    /// As in the guard, crossed crank tips break the type-2 limit.
     pub fn distances_from_limits(&self) -> [f64; 12] {
         let Limits {
             type2,
@@ -170,7 +168,7 @@ impl ExactConditions {
         })
     }
 
-    /// True if K2 of the five-bar with this index is so near to 0 that the guard may get its sign wrong.
+    /// True if K2 of the five-bar with this index is so near to 0 that rounding may change its sign in the guard.
     pub fn is_at_crossing(&self, index: usize) -> bool {
         self.k2[index].abs() <= self.bands[12 + index]
     }
@@ -189,17 +187,16 @@ fn index_of(check: Check) -> usize {
     let mut indices = kinds
         .into_iter()
         .filter_map(|(first_index, checks)| Some(first_index + index_among(checks)?));
-    indices.next().expect("every condition is of one kind")
+    indices.next().expect("every condition is of a known kind")
 }
 
-/// Returns the largest errors of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum
-/// of the error of the guard's arithmetic and of the rounding by `step_mm` mm of the distance `tip_distance` between
-/// the crank tips, mm. Near a singularity, where `type2` is small, such a step turns the couplers by a large
-/// angle.
+/// Returns the bands of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum of two errors: that
+/// of the guard's arithmetic, and that of rounding the distance `tip_distance_mm` between the crank tips by `step_mm`.
+/// Near a singularity, where `type2` is small, a step of this distance turns the couplers by a large angle.
 fn five_bar_bands(
     robot: &Robot,
     end: End,
-    tip_distance: f64,
+    tip_distance_mm: f64,
     type2: f64,
     step_mm: f64,
 ) -> [f64; 3] {
@@ -209,8 +206,8 @@ fn five_bar_bands(
     });
     let (a, b) = (bars.left_coupler_length, bars.right_coupler_length);
     let cosine = (1.0 - type2 * type2).max(0.0).sqrt();
-    [cosine * tip_distance / (a * b), 1.0 / a, 1.0 / b]
-        .map(|turns| MARGIN_BAND + step_mm * turns / type2)
+    [cosine * tip_distance_mm / (a * b), 1.0 / a, 1.0 / b]
+        .map(|turn_per_mm| MARGIN_BAND + step_mm * turn_per_mm / type2)
 }
 
 impl Verdict {
@@ -233,8 +230,8 @@ impl Verdict {
     }
 }
 
-/// Returns the index of the five-bar that does not close; `None` if it is a side that does not close.
-pub fn open_end(fault: &Infeasible) -> Option<usize> {
+/// Returns the index of the five-bar that does not close; `None` if a side does not close.
+pub fn index_of_open_five_bar(fault: &Infeasible) -> Option<usize> {
     match fault.part {
         Part::End(lizard_kinematics::End::Head) => Some(0),
         Part::End(lizard_kinematics::End::Tail) => Some(1),
@@ -242,37 +239,37 @@ pub fn open_end(fault: &Infeasible) -> Option<usize> {
     }
 }
 
-/// The largest and the root mean square of many errors.
+/// The maximum and the root mean square of many errors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ErrorStatistics {
     pub max: f64,
-    squares: f64,
+    sum_of_squares: f64,
     count: f64,
 }
 
 impl ErrorStatistics {
     pub fn add(&mut self, error: f64) {
         self.max = self.max.max(error.abs());
-        self.squares += error * error;
+        self.sum_of_squares += error * error;
         self.count += 1.0;
     }
 }
 
 impl fmt::Display for ErrorStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rms = (self.squares / self.count.max(1.0)).sqrt();
+        let rms = (self.sum_of_squares / self.count.max(1.0)).sqrt();
         write!(f, "max {:.5} rms {rms:.5}", self.max)
     }
 }
 
 /// Returns a random pose anywhere in the servos' travel.
-pub fn any_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
+pub fn random_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
     Pose(calibration.map(|servo| Sweep(rng.i16(servo.travel_min.0..=servo.travel_max.0))))
 }
 
 /// Returns a random pose within a share of every servo's travel from neutral.
-pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
-    let pose = any_pose(rng, calibration);
+pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
+    let pose = random_pose(rng, calibration);
     Pose(
         pose.0
             .map(|sweep| Sweep((f64::from(sweep.0) * share) as i16)),
@@ -280,10 +277,10 @@ pub fn pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) ->
 }
 
 /// Returns a random pose that the guard accepts.
-pub fn safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
+pub fn random_safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
     let calibration = firmware.calibration();
     (0..1_000_000)
-        .map(|n| pose_within(rng, &calibration, if n % 2 == 0 { 1.0 } else { 0.4 }))
+        .map(|n| random_pose_within(rng, &calibration, if n % 2 == 0 { 1.0 } else { 0.4 }))
         .find(|pose| is_safe(firmware, pose))
         .expect("poses near neutral are safe")
 }

@@ -1,19 +1,20 @@
-//! Tests of gaits at full speed or at a set speed: the duration of their cycles, and the poses of their frames.
+//! Tests of running gaits: the duration of their cycles at full speed and at other speeds, and the poses of their
+//! frames.
 
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::units::CYCLE;
-use lizard_host_tests::{Named, rng, robots};
+use lizard_host_tests::{NamedRobot, rng, robots};
 
 use crate::frames::{CheckedRobot, gait_command, settling_frames};
-use crate::gaits::{FULL_PACE, gaits};
+use crate::gaits::{FULL_PACE, all_gaits};
 
 #[test]
 fn a_hundred_cycles_take_a_hundred_periods() {
-    for (Named { name, .. }, float_gait, gait) in gaits() {
-        let frames = (5000.0 * float_gait.period()).round();
-        let phase = (0..frames as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
-        // The advance is rounded to 1/2^24 cycle, so each frame adds an error of up to half of 1/2^24.
-        let expected = (frames / 50.0 / float_gait.period()).fract();
+    for (NamedRobot { name, .. }, float_gait, gait) in all_gaits() {
+        let frame_count = (5000.0 * float_gait.period()).round();
+        let phase = (0..frame_count as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
+        // The advance of a frame is rounded to 1/2^24 cycle, so each frame adds an error of up to half of this.
+        let expected = (frame_count / 50.0 / float_gait.period()).fract();
         let error = (f64::from(phase) / f64::from(CYCLE)
             - if float_gait.is_reversed() {
                 -expected
@@ -23,7 +24,7 @@ fn a_hundred_cycles_take_a_hundred_periods() {
         .rem_euclid(1.0);
         let error = error.min(1.0 - error) * f64::from(CYCLE);
         assert!(
-            error <= 0.5 * frames + 1.0,
+            error <= 0.5 * frame_count + 1.0,
             "{name}: {} is {error} of 2^24 off",
             float_gait.name()
         );
@@ -31,18 +32,18 @@ fn a_hundred_cycles_take_a_hundred_periods() {
 }
 
 #[test]
-fn every_speed_gives_its_share_of_every_gaits_pace() {
-    const FRAMES: u32 = 1000;
+fn every_speed_in_percent_gives_this_share_of_a_gaits_pace() {
+    const FRAME_COUNT: u32 = 1000;
     let mut rng = rng(8000);
     let mut worst_error = 0.0f64;
-    let (mut walked_count, mut barred_count) = (0, 0);
+    let (mut walked_count, mut blocked_count) = (0, 0);
     for named in robots() {
         for float_gait in named.robot.gaits().iter().skip(1) {
             let mut walker = CheckedRobot::standing(named);
             walker.expect_ok(&gait_command(float_gait));
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
-                barred_count += 1; // the path to its first pose is unsafe
+                blocked_count += 1; // the path to the gait's first pose is unsafe
                 continue;
             }
             walked_count += 1;
@@ -50,17 +51,18 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
                 walker.expect_ok(&format!("speed {percent}"));
                 walker.run_frames(10);
                 let mut advance = 0i64;
-                for _ in 0..FRAMES {
+                for _ in 0..FRAME_COUNT {
                     let previous_phase = walker.motion().phase();
                     walker.run_frames(1);
-                    // A frame advances by less than half a cycle, so the difference wraps around without ambiguity.
+                    // A frame advances by less than half a cycle, so the wrapped difference has the right sign.
                     let step = walker.motion().phase().wrapping_sub(previous_phase) << 8;
                     advance += i64::from(step as i32 >> 8);
                 }
                 let cycles = advance as f64 / f64::from(CYCLE);
                 let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };
                 let share = sign * f64::from(percent) / 100.0;
-                let error = cycles / (share * f64::from(FRAMES) / 50.0 / float_gait.period()) - 1.0;
+                let error =
+                    cycles / (share * f64::from(FRAME_COUNT) / 50.0 / float_gait.period()) - 1.0;
                 worst_error = worst_error.max(error.abs());
                 assert!(
                     error.abs() <= 0.005,
@@ -73,8 +75,8 @@ fn every_speed_gives_its_share_of_every_gaits_pace() {
     }
     println!("pace is off by at most {:.2} %", 100.0 * worst_error);
     assert!(
-        walked_count > 10 * barred_count,
-        "{walked_count} gaits walked, {barred_count} barred"
+        walked_count > 10 * blocked_count,
+        "{walked_count} gaits walked, {blocked_count} blocked"
     );
 }
 
@@ -104,8 +106,8 @@ fn a_gait_that_is_ordered_again_continues() {
 }
 
 #[test]
-fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
-    let (mut walked_count, mut barred_count) = (0, 0);
+fn every_frame_of_a_running_gait_is_a_pose_of_this_gait() {
+    let (mut walked_count, mut blocked_count) = (0, 0);
     for named in robots() {
         for (gait, id) in named
             .robot
@@ -119,7 +121,7 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
             let core_gait = firmware.gait(id);
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
-                barred_count += 1; // the path to its first pose is unsafe
+                blocked_count += 1; // the path to the gait's first pose is unsafe
                 continue;
             }
             walked_count += 1;
@@ -136,7 +138,7 @@ fn every_frame_of_a_gait_under_way_is_a_pose_of_it() {
         }
     }
     assert!(
-        walked_count > 10 * barred_count,
-        "{walked_count} gaits walked, {barred_count} barred"
+        walked_count > 10 * blocked_count,
+        "{walked_count} gaits walked, {blocked_count} blocked"
     );
 }

@@ -1,7 +1,7 @@
-//! Tests of `lizard flash` as a user runs it. The board is simulated in real time, with the original boot
-//! loader of a UNO or of an old Nano.
+//! Tests of `lizard flash` as a user runs it. The board is simulated in real time, with the original boot loader of a
+//! UNO or of an old Nano.
 //!
-//! `make flash-test` runs these tests after it has compiled program and boot loader.
+//! `make flash-test` runs these tests after it has compiled the program and the boot loaders.
 
 #[path = "../desk/mod.rs"]
 mod desk;
@@ -12,7 +12,7 @@ mod shell;
 
 use std::sync::LazyLock;
 
-use desk::{BOOT_LOADER_START, Desk, loader};
+use desk::{BOOT_LOADER_START, Desk, load_boot_loader};
 use lizard_core::memory::copies::REST_POSE_ADDRESS;
 use lizard_core::memory::record::{MEMORY_BYTES, RECORD_BYTES};
 use lizard_core::numbers::section::START_ADDRESS;
@@ -24,8 +24,8 @@ use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Image, Port, Uno};
 
-/// A program other than the firmware, which sends bytes without end at the boot loader's baud rate.
-static TALKER: LazyLock<Image> = LazyLock::new(|| {
+/// A program that is not the firmware. It sends bytes forever at the boot loader's baud rate.
+static SENDER: LazyLock<Image> = LazyLock::new(|| {
     avr_gcc::compile_c(
         r#"
         #include <avr/io.h>
@@ -45,7 +45,7 @@ static TALKER: LazyLock<Image> = LazyLock::new(|| {
 
 /// Returns the flash below the boot loader of a board that has `lizard`'s own firmware and this robot.
 fn firmware_of(robot: &Robot) -> Vec<u8> {
-    let image = lizard_host::firmware::image_with(robot);
+    let image = lizard_host::firmware::built_in_image(robot);
     let uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.flash()[..BOOT_LOADER_START].to_vec()
 }
@@ -62,20 +62,20 @@ fn another_robot() -> (&'static str, Robot) {
         _ => "large",
     };
     let file = root().join("robots").join(name).with_extension("toml");
-    (name, Robot::load(&file).expect("it is right"))
+    (name, Robot::load(&file).expect("the file is valid"))
 }
 
 /// Starts `lizard flash` at the desk's port.
-fn lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
+fn start_lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
-    let name = desk.name();
-    let arguments = [&["flash", name.as_str()], arguments].concat();
+    let port = desk.port_path();
+    let arguments = [&["flash", port.as_str()], arguments].concat();
     Shell::start(&lizard, &arguments, &[])
 }
 
-/// Checks that an upload has left the EEPROM alone, except for the rest pose. The firmware itself may write
-/// the rest pose, for example when `lizard` on a slow machine resets the board several times.
-fn assert_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
+/// Checks that an upload has not changed the EEPROM, except for the rest pose. The firmware itself may write the rest
+/// pose, for example when `lizard` on a slow machine resets the board several times.
+fn assert_eeprom_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
     let rest_addresses =
         usize::from(REST_POSE_ADDRESS.0)..usize::from(REST_POSE_ADDRESS.0 + RECORD_BYTES);
     let eeprom = desk.uno.eeprom();
@@ -89,19 +89,18 @@ fn assert_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
     );
 }
 
-/// Unplugs the board and plugs it into another port.
+/// Unplugs the board. It gets another port, to which the next program connects.
 fn unplug(desk: &mut Desk) {
     desk.port = Port::new().expect("a pseudo terminal");
 }
 
-/// Runs the board until `lizard` has exited. Returns the last screen.
+/// Runs the board until `lizard` has exited. Returns all output of `lizard`.
 fn run_to_exit(desk: &mut Desk, shell: &Shell) -> String {
     desk.run_until_exit(shell);
     shell.last_screen()
 }
 
-/// Waits for a successful upload, and checks that the robot reports its firmware. Returns the
-/// screen.
+/// Waits for a successful upload, and checks that the robot reports its firmware. Returns all output of `lizard`.
 fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
     let screen = run_to_exit(desk, shell);
     assert!(screen.contains("\n# lizard "), "{screen}");
@@ -111,7 +110,7 @@ fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
 
 /// Begins an upload to a board, and waits until some pages of the new code are written.
 fn begin_upload(desk: &mut Desk) -> Shell {
-    let shell = lizard_flash(desk, &[]);
+    let shell = start_lizard_flash(desk, &[]);
     let is_half_written = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
     let has_begun = is_half_written && !shell.has_ended();
@@ -121,40 +120,43 @@ fn begin_upload(desk: &mut Desk) -> Shell {
 
 /// Returns a board whose flash has the firmware, set without an upload.
 fn board_with_firmware() -> Desk {
-    let mut desk = Desk::with_a_new_board();
+    let mut desk = Desk::with_new_uno();
     desk.uno.set_flash(0, &firmware());
     desk
 }
 
 #[test]
-fn a_blank_board_is_written_and_its_robot_says_what_it_is() {
-    let mut desk = Desk::with_a_new_board();
-    let shell = lizard_flash(&desk, &[]);
+fn a_blank_board_is_written_and_its_robot_reports_its_firmware() {
+    let mut desk = Desk::with_new_uno();
+    let shell = start_lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
     assert!(screen.contains("the board has no program\n"), "{screen}");
-    // Erased flash between code and robot needs no writing.
+    // The erased flash between code and robot is not written.
     assert!(screen.contains(" bytes written and verified, "), "{screen}");
 }
 
 #[test]
-fn a_board_whose_program_never_stops_talking_is_written_and_keeps_its_eeprom() {
-    let mut desk = Desk::with_a_new_board();
-    let talker = TALKER.flash();
-    desk.uno.set_flash(0, &talker);
+fn a_board_whose_program_sends_bytes_forever_is_written_and_keeps_its_eeprom() {
+    let mut desk = Desk::with_new_uno();
+    let program = SENDER.flash();
+    desk.uno.set_flash(0, &program);
     let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
     desk.uno.set_eeprom(&eeprom);
-    let shell = lizard_flash(&desk, &[]);
+    let shell = start_lizard_flash(&desk, &[]);
     desk.wait_for_text(&shell, "written and verified");
-    assert_kept(&desk, &eeprom);
+    assert_eeprom_kept(&desk, &eeprom);
     let screen = expect_success(&mut desk, &shell);
-    let board_text = format!("the board has another program, of {} bytes\n", talker.len());
+    let board_text = format!(
+        "the board has another program, of {} bytes\n",
+        program.len()
+    );
     assert!(screen.contains(&board_text), "{screen}");
 }
 
 #[test]
 fn a_board_that_has_the_image_is_left_as_it_is() {
     let mut desk = board_with_firmware();
-    let shell = lizard_flash(&desk, &[]);
+    let shell = start_lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
     let robot_text = format!("robot {} already", robot_label(robot().firmware()));
     assert!(screen.contains(&robot_text), "{screen}");
@@ -166,19 +168,19 @@ fn one_page_that_differs_is_written_alone() {
     let mut desk = board_with_firmware();
     let old_byte = desk.uno.flash()[0x2005];
     desk.uno.set_flash(0x2005, &[old_byte ^ 0x10]);
-    let shell = lizard_flash(&desk, &[]);
+    let shell = start_lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
     let build_text = "the board has another build of lizard";
     assert!(screen.contains(build_text), "{screen}");
-    // The page that differs, and the page at address 0, where the chip starts.
+    // Two pages: the page that differs, and the page at address 0, where the chip starts.
     let bytes_text = "\n256 bytes written and verified";
     assert!(screen.contains(bytes_text), "{screen}");
 }
 
 #[test]
 fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
-    let mut desk = Desk::with_a_new_board();
-    desk.uno.set_flash(0, &TALKER.flash());
+    let mut desk = Desk::with_new_uno();
+    desk.uno.set_flash(0, &SENDER.flash());
     let shell = begin_upload(&mut desk);
     unplug(&mut desk);
     let screen = run_to_exit(&mut desk, &shell);
@@ -189,24 +191,24 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     );
     assert!(!desk.differences(&firmware()).is_empty());
 
-    // After the board is plugged in again, it has power, and nobody calls its boot loader.
+    // After the board is plugged in again, it has power, but no program calls its boot loader.
     desk.uno.power_cycle();
     desk.uno.take_transmitted();
     desk.uno.take_edges();
     desk.uno.run_ms(3000);
-    assert!(desk.uno.transmitted().is_empty(), "it says nothing");
+    assert!(desk.uno.transmitted().is_empty(), "the board sends nothing");
     let edges = desk.uno.take_edges();
     assert!(edges.is_empty(), "no pin moves: {edges:?}");
-    // A port runs in real time, but these seconds were simulated faster, so the board gets a new port.
+    // These seconds were simulated faster than real time, which a port does not allow, so the board gets a new port.
     unplug(&mut desk);
 
-    let shell = lizard_flash(&desk, &[]);
+    let shell = start_lizard_flash(&desk, &[]);
     expect_success(&mut desk, &shell);
 }
 
 #[test]
 fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
-    let mut desk = Desk::with_a_new_board();
+    let mut desk = Desk::with_new_uno();
     let shell = begin_upload(&mut desk);
     desk.uno.reset();
     let screen = expect_success(&mut desk, &shell);
@@ -215,8 +217,8 @@ fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
 
 #[test]
 fn a_byte_that_changes_after_it_was_written_is_written_again() {
-    let mut desk = Desk::with_a_new_board();
-    let shell = lizard_flash(&desk, &[]);
+    let mut desk = Desk::with_new_uno();
+    let shell = start_lizard_flash(&desk, &[]);
     let mut has_changed = false;
     let has_ended = desk.run_until(|uno| {
         // The byte changes long before it is read back.
@@ -237,11 +239,11 @@ fn a_byte_that_changes_after_it_was_written_is_written_again() {
 }
 
 #[test]
-fn a_board_without_a_boot_loader_that_answers_is_explained() {
-    let mut desk = Desk::with_a_new_board();
-    // A boot loader that does nothing: `rjmp .-2`.
+fn a_board_whose_boot_loader_does_not_answer_gets_an_explanation() {
+    let mut desk = Desk::with_new_uno();
+    // This boot loader does nothing: `rjmp .-2`.
     desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
-    let shell = lizard_flash(&desk, &[]);
+    let shell = start_lizard_flash(&desk, &[]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(
         screen.contains("no boot loader answers. Is it a UNO or a Nano?"),

@@ -2,19 +2,19 @@
 
 use super::*;
 
-/// First byte of an old Nano's boot loader.
-const NANO_BOOT_START: usize = 0x7800;
+/// Address of the first byte of an old Nano's boot loader.
+const NANO_BOOT_LOADER_START: usize = 0x7800;
 
 /// Returns a Nano as it was sold until 2018, with a boot loader at 57 600 baud.
 fn old_nano() -> Desk {
-    Desk::with(loader("old-nano.hex"))
+    Desk::with_boot_loader(load_boot_loader("old-nano.hex"))
 }
 
 #[test]
-fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
+fn an_old_nano_is_found_at_its_own_baud_rate_written_and_started() {
     let mut desk = old_nano();
     let flash_before = desk.uno.flash().to_vec();
-    let shell = lizard_flash(&desk, &["--robot", "large"]);
+    let shell = start_lizard_flash(&desk, &["--robot", "large"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(
         screen.contains("no answer at 115200 baud; calling again at 57600 baud"),
@@ -23,24 +23,28 @@ fn an_old_nano_is_found_at_its_own_speed_written_and_started() {
     assert!(screen.contains("the board has no program\n"), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
     assert!(screen.contains(" robot large "), "{screen}");
-    let large = Robot::load(root().join("robots/large.toml")).expect("it is right");
-    assert!(desk.uno.flash()[..NANO_BOOT_START] == firmware_of(&large)[..NANO_BOOT_START]);
-    assert!(desk.uno.flash()[NANO_BOOT_START..] == flash_before[NANO_BOOT_START..]);
+    let large = Robot::load(root().join("robots/large.toml")).expect("the file is valid");
+    assert!(
+        desk.uno.flash()[..NANO_BOOT_LOADER_START] == firmware_of(&large)[..NANO_BOOT_LOADER_START]
+    );
+    assert!(desk.uno.flash()[NANO_BOOT_LOADER_START..] == flash_before[NANO_BOOT_LOADER_START..]);
 
-    // Then replaces only the robot. This boot loader never resets the chip by itself.
-    let shell = lizard_flash(&desk, &["--only-robot", "--robot", "paper"]);
+    // Then only the robot is replaced. This boot loader never resets the chip.
+    let shell = start_lizard_flash(&desk, &["--only-robot", "--robot", "paper"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("robot large "), "{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
-    let paper = Robot::load(root().join("robots/paper.toml")).expect("it is right");
-    assert!(desk.uno.flash()[..NANO_BOOT_START] == firmware_of(&paper)[..NANO_BOOT_START]);
+    let paper = Robot::load(root().join("robots/paper.toml")).expect("the file is valid");
+    assert!(
+        desk.uno.flash()[..NANO_BOOT_LOADER_START] == firmware_of(&paper)[..NANO_BOOT_LOADER_START]
+    );
 }
 
 #[test]
 fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
     let mut desk = old_nano();
     let flash_before = desk.uno.flash().to_vec();
-    let shell = lizard_flash(&desk, &["--robot", "own-gaits"]);
+    let shell = start_lizard_flash(&desk, &["--robot", "own-gaits"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(
         screen.contains("a Nano has 30720 before its boot section"),
@@ -52,7 +56,7 @@ fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
 #[test]
 fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     let mut desk = old_nano();
-    desk.uno.set_flash(0, &firmware()[..NANO_BOOT_START]);
+    desk.uno.set_flash(0, &firmware()[..NANO_BOOT_LOADER_START]);
     desk.uno.run_ms(2500);
     let take_text = |uno: &mut Uno| -> String {
         let bytes = uno.take_transmitted();
@@ -66,15 +70,15 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     desk.uno.stall_main(1000 * simulated_uno::CYCLES_PER_MS);
     desk.uno.run_ms(400);
     desk.uno.take_edges();
-    // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends:
-    // the RESET pin does not clear WDRF, and while WDRF is set, WDE stays set (data sheet, 11.9.2).
+    // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends. The RESET pin
+    // does not clear WDRF, and while WDRF is set, WDE stays set (data sheet, 11.9.2).
     desk.uno.reset();
-    let resets = desk.uno.watchdog_resets();
+    let resets_before = desk.uno.watchdog_resets();
     desk.uno.run_ms(3000);
-    let reset_count = desk.uno.watchdog_resets() - resets;
+    let reset_count = desk.uno.watchdog_resets() - resets_before;
     assert!(
         (150..200).contains(&reset_count),
-        "{reset_count}: one every 16 ms or so"
+        "{reset_count} resets, not one every 16 ms or so"
     );
     assert_eq!(take_text(&mut desk.uno), "");
     let pins = servo_pins(robot());

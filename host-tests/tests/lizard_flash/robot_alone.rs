@@ -3,8 +3,8 @@
 
 use super::*;
 
-/// Sends a line and returns the board's output in the next simulated milliseconds.
-fn run_line(desk: &mut Desk, line: &str, ms: u64) -> String {
+/// Sends a line, runs the board for `ms` simulated milliseconds, and returns its output.
+fn send_line(desk: &mut Desk, line: &str, ms: u64) -> String {
     desk.uno.take_transmitted();
     desk.uno.send(line.as_bytes());
     desk.uno.run_ms(ms);
@@ -14,19 +14,19 @@ fn run_line(desk: &mut Desk, line: &str, ms: u64) -> String {
 }
 
 #[test]
-fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
+fn only_the_robot_is_written_behind_the_firmware_and_the_trims_are_kept() {
     let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
     desk.uno.power_cycle();
-    assert!(run_line(&mut desk, "", 2500).contains("# lizard "));
-    assert!(run_line(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
-    assert!(run_line(&mut desk, "save\n", 500).contains("ok"));
+    assert!(send_line(&mut desk, "", 2500).contains("# lizard "));
+    assert!(send_line(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
+    assert!(send_line(&mut desk, "save\n", 500).contains("ok"));
     unplug(&mut desk);
     let eeprom_before = desk.uno.eeprom();
 
-    let shell = lizard_flash(&desk, &["--only-robot", "--robot", name]);
+    let shell = start_lizard_flash(&desk, &["--only-robot", "--robot", name]);
     desk.wait_for_text(&shell, "written and verified");
-    assert_kept(&desk, &eeprom_before);
+    assert_eeprom_kept(&desk, &eeprom_before);
     let screen = run_to_exit(&mut desk, &shell);
     let [first_label, other_label] =
         [robot(), &other_robot].map(|robot| robot_label(robot.firmware()));
@@ -39,12 +39,12 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
         banner.is_some_and(|line| line.contains(&format!(" robot {other_label}"))),
         "{screen}"
     );
-    let end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
+    let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
+    assert!(desk.uno.flash()[..robot_end] == firmware_of(&other_robot)[..robot_end]);
 
-    // Then the first robot is written again, with `--json`; its trims are unchanged.
-    let shell = lizard_flash(&desk, &["--only-robot", "--json"]);
-    let screen = self::run_to_exit(&mut desk, &shell);
+    // Then the first robot is written again, with `--json`. Its trims are unchanged.
+    let shell = start_lizard_flash(&desk, &["--only-robot", "--json"]);
+    let screen = run_to_exit(&mut desk, &shell);
     let (name, hash) = first_label.split_once(' ').expect("name and hash");
     let version = env!("CARGO_PKG_VERSION");
     let expected_end =
@@ -54,8 +54,8 @@ fn a_robot_alone_is_written_behind_the_firmware_and_the_trims_are_kept() {
         |line: &str| line.contains(r#""bytes_written":"#) && line.ends_with(&expected_end);
     assert!(line.is_some_and(is_expected), "{screen}");
     assert!(!screen.contains("\n# lizard"), "{screen}");
-    assert_kept(&desk, &eeprom_before);
-    let answer = run_line(&mut desk, "cal\n", 500);
+    assert_eeprom_kept(&desk, &eeprom_before);
+    let answer = send_line(&mut desk, "cal\n", 500);
     assert!(answer.contains("3.5"), "{answer}");
 }
 
@@ -64,7 +64,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
     let arguments = ["--only-robot", "--robot", name];
-    let shell = lizard_flash(&desk, &arguments);
+    let shell = start_lizard_flash(&desk, &arguments);
     let section = other_robot.section();
     // Waits until the third page of the robot is written.
     let third_page = usize::from(START_ADDRESS) + 0x100;
@@ -81,14 +81,14 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     // After the board is plugged in again, the firmware reports the missing robot, and no servo moves.
     desk.uno.power_cycle();
     desk.uno.take_edges();
-    let output_text = run_line(&mut desk, "", 2500);
+    let output_text = send_line(&mut desk, "", 2500);
     assert!(
         output_text.contains("no robot in the flash"),
         "{output_text}"
     );
-    let output_text = run_line(&mut desk, "walk\n", 300);
+    let output_text = send_line(&mut desk, "walk\n", 300);
     assert!(output_text.contains("err "), "{output_text}");
-    assert!(run_line(&mut desk, "status\n", 300).contains("fault=robot"));
+    assert!(send_line(&mut desk, "status\n", 300).contains("fault=robot"));
     let edges = desk.uno.take_edges();
     let pins = servo_pins(&other_robot);
     assert!(
@@ -97,24 +97,24 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     );
     unplug(&mut desk);
 
-    let shell = lizard_flash(&desk, &arguments);
+    let shell = start_lizard_flash(&desk, &arguments);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     assert!(
         screen.contains(&format!(" robot {}", robot_label(other_robot.firmware()))),
         "{screen}"
     );
-    let end = usize::from(START_ADDRESS) + section.len();
-    assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
+    let robot_end = usize::from(START_ADDRESS) + section.len();
+    assert!(desk.uno.flash()[..robot_end] == firmware_of(&other_robot)[..robot_end]);
 }
 
 #[test]
-fn a_robot_alone_is_not_written_behind_another_program() {
+fn no_robot_is_written_behind_another_program() {
     let mut desk = board_with_firmware();
-    // The flash is as avrdude leaves it after a sketch: only the sketch's pages differ.
-    desk.uno.set_flash(0, &TALKER.flash());
+    // The flash is as after avrdude has written a sketch: only the sketch's pages differ.
+    desk.uno.set_flash(0, &SENDER.flash());
     let flash_before = desk.uno.flash().to_vec();
-    let shell = lizard_flash(&desk, &["--only-robot"]);
+    let shell = start_lizard_flash(&desk, &["--only-robot"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the board has another program"), "{screen}");
     assert!(screen.contains("Nothing was written"), "{screen}");
@@ -140,12 +140,12 @@ fn avrdude_writes_the_robot_that_lizard_image_has_made() {
     let shell = Shell::start(&lizard, &arguments, &[]);
     run_to_exit(&mut desk, &shell);
     let write_option = format!("flash:w:{hex}:i");
-    let port = desk.name();
+    let port = desk.port_path();
     let options = ["-D", "-c", "arduino", "-p", "atmega328p", "-b", "115200"];
     let arguments = [&options[..], &["-P", &port, "-U", &write_option]].concat();
     let shell = Shell::start("avrdude", &arguments, &[]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("bytes of flash verified"), "{screen}");
-    let end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(desk.uno.flash()[..end] == firmware_of(&other_robot)[..end]);
+    let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
+    assert!(desk.uno.flash()[..robot_end] == firmware_of(&other_robot)[..robot_end]);
 }

@@ -1,6 +1,6 @@
-//! Tests with damaged sections: the core refuses them, and a damaged section with a valid checksum can harm
-//! no servo. The core runs here with checks that the chip has no room for: a number that overflows, or a
-//! byte that is read beyond the section's end, fails the test.
+//! Tests with damaged sections: the core refuses them, and a damaged section with a valid checksum can harm no servo.
+//! Here the core runs with checks for which the chip has no room: an overflow, or a read beyond the section's end,
+//! fails the test.
 
 use std::mem::offset_of;
 
@@ -21,15 +21,17 @@ use lizard_robot::flash;
 
 use crate::sections;
 
-/// The byte ranges of fields in a header.
-const FORMAT: std::ops::Range<usize> = 4..6;
-const LENGTH: std::ops::Range<usize> = 6..8;
+/// The byte range of the format in a header.
+const FORMAT_BYTES: std::ops::Range<usize> = 4..6;
+
+/// The byte range of the length in a header.
+const LENGTH_BYTES: std::ops::Range<usize> = 6..8;
 
 fn find_damage(section: &[u8]) -> Option<SectionError> {
     Robot::open(Region::new(section)).err()
 }
 
-/// Returns the flash of a chip into which only these first bytes of a section were written.
+/// Returns the flash after only these first bytes of a section were written.
 fn partly_written_flash(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
     flash.resize(SPACE_BYTES.into(), 0xff);
@@ -37,7 +39,7 @@ fn partly_written_flash(section: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn every_robot_is_read_with_anything_behind_its_section() {
+fn every_robot_is_read_with_any_bytes_behind_its_section() {
     for (named, section) in sections() {
         assert_eq!(find_damage(section), None, "{}", named.name);
         for filler in [0, 0x55, 0xff] {
@@ -53,16 +55,17 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
     let files = sections()
         .iter()
         .filter(|(named, _)| named.name.ends_with(".toml"));
-    let mut count = 0;
+    let mut file_count = 0;
     for (named, section) in files {
-        count += 1;
+        file_count += 1;
         let mut section = partly_written_flash(section);
-        let length = u16::from_le_bytes([section[LENGTH.start], section[LENGTH.start + 1]]);
+        let length =
+            u16::from_le_bytes([section[LENGTH_BYTES.start], section[LENGTH_BYTES.start + 1]]);
         for bit in 0..8 * usize::from(length) {
             section[bit / 8] ^= 1 << (bit % 8);
             let expected = match bit / 8 {
                 0..4 => SectionError::Missing,
-                index if FORMAT.contains(&index) => SectionError::OtherFormat,
+                index if FORMAT_BYTES.contains(&index) => SectionError::OtherFormat,
                 _ => SectionError::Damaged,
             };
             assert_eq!(
@@ -74,7 +77,7 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
             section[bit / 8] ^= 1 << (bit % 8);
         }
     }
-    assert!(count >= 4, "{count} files");
+    assert!(file_count >= 4, "{file_count} files");
 }
 
 #[test]
@@ -87,7 +90,7 @@ fn a_section_that_ends_at_any_byte_is_refused() {
                 "{} cut at {length}",
                 named.name
             );
-            // The last bytes may equal those of erased flash.
+            // The missing bytes may equal erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
                 let cut_section = partly_written_flash(cut_section);
                 assert!(
@@ -101,12 +104,13 @@ fn a_section_that_ends_at_any_byte_is_refused() {
 }
 
 #[test]
-fn a_section_of_any_other_version_is_reported_as_such() {
+fn a_section_of_any_other_format_is_reported_as_other_format() {
     let (_, section) = &sections()[0];
     let mut section = section.clone();
-    let own_format = u16::from_le_bytes([section[FORMAT.start], section[FORMAT.start + 1]]);
+    let own_format =
+        u16::from_le_bytes([section[FORMAT_BYTES.start], section[FORMAT_BYTES.start + 1]]);
     for format in (0..=u16::MAX).filter(|format| *format != own_format) {
-        section[FORMAT].copy_from_slice(&format.to_le_bytes());
+        section[FORMAT_BYTES].copy_from_slice(&format.to_le_bytes());
         assert_eq!(
             find_damage(&section),
             Some(SectionError::OtherFormat),
@@ -116,7 +120,7 @@ fn a_section_of_any_other_version_is_reported_as_such() {
 }
 
 #[test]
-fn erased_flash_and_flash_filled_with_one_byte_is_refused() {
+fn erased_flash_and_flash_filled_with_any_one_byte_are_refused() {
     for byte in 0..=u8::MAX {
         let flash = [byte; SPACE_BYTES as usize];
         assert_eq!(find_damage(&flash), Some(SectionError::Missing), "{byte}");
@@ -130,22 +134,22 @@ fn a_hundred_thousand_random_sections_are_refused() {
     for n in 0..100_000 {
         let mut section = vec![0; rng.usize(..=usize::from(SPACE_BYTES))];
         rng.fill(&mut section);
-        // Each valid field of the header lets the check reach the next field.
+        // The core checks the next field of the header only if the previous field is valid.
         if n % 4 > 0 {
             put_bytes(&mut section, 0, &MAGIC.to_le_bytes());
         }
         if n % 4 > 1 {
             put_bytes(
                 &mut section,
-                FORMAT.start,
+                FORMAT_BYTES.start,
                 &lizard_core::numbers::section::FORMAT.to_le_bytes(),
             );
         }
         if n % 4 > 2 {
             let length = section.len() as u16;
-            put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
+            put_bytes(&mut section, LENGTH_BYTES.start, &length.to_le_bytes());
         }
-        // One section in 65 536 has the right checksum, but its numbers are refused.
+        // One section in 65 536 has a valid checksum, but its numbers are refused.
         assert!(find_damage(&section).is_some(), "section {n}");
     }
 }
@@ -164,9 +168,9 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
         let mut section = vec![0; rng.usize(min..=usize::from(SPACE_BYTES))];
         rng.fill(&mut section);
         let (_, valid_section) = rng.choice(sections()).expect("sections");
-        put_bytes(&mut section, 0, &valid_section[..LENGTH.start]);
+        put_bytes(&mut section, 0, &valid_section[..LENGTH_BYTES.start]);
         let length = section.len() as u16;
-        put_bytes(&mut section, LENGTH.start, &length.to_le_bytes());
+        put_bytes(&mut section, LENGTH_BYTES.start, &length.to_le_bytes());
         write_checksum(&mut section);
         if find_damage(&section).is_none() {
             check_motion(rng, &section);
@@ -203,8 +207,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     );
 }
 
-/// The gaits exceed the range that their section claims for gaits, and the limits are such that the guard
-/// accepts any margin and stroke.
+/// The gaits exceed the range that their section states for gaits, and the guard accepts any margin and stroke.
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
@@ -269,17 +272,18 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     }
 }
 
-/// Changes a random number of a section: of the servos, pins or limits, or of the parts behind `Numbers`, the
-/// curves, gaits, waveforms or maps. Leaves the bars and the offsets of the parts unchanged, which the device
-/// trusts because the host that made the section has checked them.
+/// Changes a random number of a section: a number of the servos, pins or limits, or of the parts behind `Numbers`
+/// (curves, gaits, waveforms, maps). Leaves the bars and the offsets of the parts unchanged: the device trusts them,
+/// because the host has checked them.
 fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
-    let numbers = size_of::<Header>();
+    let numbers_start = size_of::<Header>();
     let offset = match rng.u8(..4) {
         0 | 1 => {
-            numbers + rng.usize(offset_of!(Numbers, neutral_angles)..offset_of!(Numbers, curves))
+            numbers_start
+                + rng.usize(offset_of!(Numbers, neutral_angles)..offset_of!(Numbers, curves))
         }
-        2 => numbers + rng.usize(offset_of!(Numbers, rail_pin)..offset_of!(Numbers, maps)),
-        _ => rng.usize(numbers + size_of::<Numbers>()..section.len() - 1),
+        2 => numbers_start + rng.usize(offset_of!(Numbers, rail_pin)..offset_of!(Numbers, maps)),
+        _ => rng.usize(numbers_start + size_of::<Numbers>()..section.len() - 1),
     };
     let offset = offset & !1;
     let old_word = u16::from_le_bytes([section[offset], section[offset + 1]]);
@@ -289,24 +293,24 @@ fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
         2 => old_word.wrapping_add(rng.u16(..10)).wrapping_sub(5),
         3 => *rng
             .choice(&[0, 1, 0x7fff, 0x8000, 0x8001, 0xffff])
-            .expect("one"),
+            .expect("a number"),
         4 => old_word.wrapping_neg(),
         _ => old_word.wrapping_mul(rng.u16(2..5)),
     };
     section[offset..offset + 2].copy_from_slice(&new_word.to_le_bytes());
 }
 
-/// Runs a robot with an accepted section and random commands, and checks that it completes every frame and
-/// turns no servo beyond its travel.
+/// Runs a robot with an accepted section and random commands. Checks that every frame completes and no servo turns
+/// beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
-    let robot = Robot::open(flash(section)).expect("it was accepted");
+    let robot = Robot::open(flash(section)).expect("an accepted section");
     let mut running = RunningRobot::power_on(robot);
     run_frames(&mut running, 30);
     let gaits: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
     for _ in 0..8 {
         let line = match rng.u8(..8) {
             0..4 => {
-                let id = *rng.choice(&gaits).expect("stand at least");
+                let id = *rng.choice(&gaits).expect("at least stand");
                 let name: Vec<u8> = robot.gait_name(id).collect();
                 name.into_iter().map(char::from).collect()
             }
@@ -320,7 +324,7 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
             6 => "center".to_string(),
             _ => (*rng
                 .choice(&["status", "help", "cal", "save", "rest", "stand"])
-                .expect("one"))
+                .expect("a command"))
             .to_string(),
         };
         running.board.send(line.as_bytes());
@@ -340,7 +344,7 @@ fn run_frames(running: &mut RunningRobot, count: u32) {
     }
 }
 
-/// Checks that there is no pulse, or a pulse within the travel and the range of a hobby servo.
+/// Checks that a pulse is within the travel and within the range of a hobby servo. A width of 0 means no pulse.
 fn check_pulse(pulse: PulseWidth, servo: &Calibration) {
     let end_pulses = [
         servo.clamped_width(servo.travel_min),

@@ -1,16 +1,16 @@
-//! Tests of the robot's section of flash: the core reads the numbers that were written, and an invalid section
-//! moves no servo.
+//! Tests of the robot's section of flash: the core reads the numbers that were written, and an invalid section moves no
+//! servo.
 
 use std::sync::LazyLock;
 
-use lizard_host_tests::{Named, robots};
+use lizard_host_tests::{NamedRobot, robots};
 
 mod damaged;
 mod read_back;
 
-/// Returns all robots with their sections, the robots from files first.
-fn sections() -> &'static [(&'static Named, Vec<u8>)] {
-    static SECTIONS: LazyLock<Vec<(&'static Named, Vec<u8>)>> = LazyLock::new(|| {
+/// All robots with their sections. The robots from files come first.
+fn sections() -> &'static [(&'static NamedRobot, Vec<u8>)] {
+    static SECTIONS: LazyLock<Vec<(&'static NamedRobot, Vec<u8>)>> = LazyLock::new(|| {
         let sections = robots().iter().map(|named| (named, named.robot.section()));
         sections.collect()
     });

@@ -1,6 +1,5 @@
-//! Tests that read sections back with the reader of the AVR: each field must match robot.toml. The
-//! expected values come from the robot in floating point, not from the numbers that the section was
-//! made of.
+//! Tests that read sections back with the firmware's reader: each field must match robot.toml. The expected values come
+//! from the robot in floating point, not from the numbers of which the section was made.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::bars::Bars;
@@ -12,13 +11,13 @@ use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{Header, MapHeader, Numbers, Part, Region};
 use lizard_core::numbers::units::{Scale, Sine, Sweep};
 use lizard_host_tests::rng;
-use lizard_robot::{Robot as Toml, STEPS_PER_DEGREE};
+use lizard_robot::{Robot as FileRobot, STEPS_PER_DEGREE};
 
 use crate::sections;
 
-/// Runs a test for every robot. The test gets the robot's name, the robot as the core reads it, the robot
-/// that was written, and the flash.
-fn for_each_robot(test: impl Fn(&str, &Robot, &Toml, Region<'_>)) {
+/// Runs a test for every robot. The test gets the robot's name, the robot that the core reads, the robot from
+/// robot.toml, and the flash.
+fn for_each_robot(test: impl Fn(&str, &Robot, &FileRobot, Region<'_>)) {
     for (named, section) in sections() {
         let flash = Region::new(section);
         let robot =
@@ -31,22 +30,27 @@ fn read_numbers(flash: Region<'_>) -> Numbers {
     flash.read(size_of::<Header>() as u16)
 }
 
-/// Returns a length in steps, rounded to nearest.
-fn steps(mm: f64, scale: Scale) -> f64 {
+/// Converts a length to steps, rounded to nearest.
+fn steps_of_mm(mm: f64, scale: Scale) -> f64 {
     (mm * f64::from(1u32 << scale.bits)).round()
 }
 
+/// Converts a sweep in the core's steps to degrees.
 fn degrees(sweep: i32) -> f64 {
     f64::from(sweep) / STEPS_PER_DEGREE
 }
 
 #[test]
 fn the_name_the_pins_and_the_supplies_are_read_back() {
-    for_each_robot(|name, robot, toml, _| {
+    for_each_robot(|name, robot, file_robot, _| {
         let label: String = robot.robot_name().map(char::from).collect();
-        assert_eq!(label, toml.name(), "{name}");
-        assert_eq!(robot.pins(), toml.servos().map(|servo| servo.pin), "{name}");
-        let supplies = toml.supplies();
+        assert_eq!(label, file_robot.name(), "{name}");
+        assert_eq!(
+            robot.pins(),
+            file_robot.servos().map(|servo| servo.pin),
+            "{name}"
+        );
+        let supplies = file_robot.supplies();
         assert_eq!(
             robot.rail_pin(),
             supplies.rail.map(|rail| rail.pin),
@@ -82,8 +86,8 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
 
 #[test]
 fn the_servos_are_read_back() {
-    for_each_robot(|name, robot, toml, _| {
-        for (index, servo) in toml.servos().iter().enumerate() {
+    for_each_robot(|name, robot, file_robot, _| {
+        for (index, servo) in file_robot.servos().iter().enumerate() {
             let servo_id = Servo::ALL[index];
             let neutral = f64::from(robot.neutral_angle_of(servo_id).0) / STEPS_PER_DEGREE;
             assert!(
@@ -100,8 +104,8 @@ fn the_servos_are_read_back() {
             for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
                 let error =
                     f64::from(calibration.width(Sweep(sweep)).0) - 16.0 * pulse_us(sweep.into());
-                // Half a cycle each for the neutral width and for the product, and the rounding of the
-                // gain over the travel.
+                // The rounding errors are half a cycle for the neutral pulse, half a cycle for the product, and that
+                // of the gain over the travel.
                 assert!(
                     error.abs() <= 1.5,
                     "{name} {servo_id:?}: {error} cycles at {sweep}"
@@ -125,9 +129,9 @@ fn the_servos_are_read_back() {
 }
 
 #[test]
-fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
-    for_each_robot(|name, robot, toml, _| {
-        let (stored, limits) = (robot.limits(), toml.limits());
+fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
+    for_each_robot(|name, robot, file_robot, _| {
+        let (stored, limits) = (robot.limits(), file_robot.limits());
         for (stored, exact) in [
             (stored.type2, limits.type2),
             (stored.type1, limits.type1),
@@ -139,35 +143,35 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
                 "{name}: {stored:?} for {exact}"
             );
         }
-        let per_frame = toml.speed_limits().slew * STEPS_PER_DEGREE / 50.0;
+        let per_frame = file_robot.speed_limits().slew * STEPS_PER_DEGREE / 50.0;
         let rounding_down = per_frame - f64::from(robot.slew().per_frame);
         assert!(
             (-1e-5..1.0).contains(&rounding_down),
             "{name}: {rounding_down}"
         );
-        // The farthest sweeps of any gait in floating point.
-        let mut widest_sweeps = [[0.0f64; 2]; 4];
-        for gait in toml.gaits() {
+        // The smallest and largest sweeps of all gaits in floating point.
+        let mut sweep_ranges = [[0.0f64; 2]; 4];
+        for gait in file_robot.gaits() {
             for phase in 0..4096 {
                 let angles = gait.angles(f64::from(phase) / 4096.0);
-                for (index, sweep_range) in widest_sweeps.iter_mut().enumerate() {
-                    let sweep = angles[index] - toml.servos()[index].neutral;
+                for (index, sweep_range) in sweep_ranges.iter_mut().enumerate() {
+                    let sweep = angles[index] - file_robot.servos()[index].neutral;
                     let sweep = (sweep + 180.0).rem_euclid(360.0) - 180.0;
                     *sweep_range = [sweep_range[0].min(sweep), sweep_range[1].max(sweep)];
                 }
             }
         }
         for servo in Servo::ALL {
-            let reach = robot.needed_travel(servo);
-            let [min, max] = widest_sweeps[servo.index()];
-            let error = [
-                degrees(reach.min.0.into()) - min,
-                degrees(reach.max.0.into()) - max,
+            let stored = robot.needed_travel(servo);
+            let [min, max] = sweep_ranges[servo.index()];
+            let errors = [
+                degrees(stored.min.0.into()) - min,
+                degrees(stored.max.0.into()) - max,
             ];
-            // The tables may be off by a tenth of a degree, and rounding by a step.
+            // The error of the tables is up to a tenth of a degree, and that of rounding a step.
             assert!(
-                error.iter().all(|error| error.abs() < 0.11),
-                "{name} {servo:?}: {error:?}"
+                errors.iter().all(|error| error.abs() < 0.11),
+                "{name} {servo:?}: {errors:?}"
             );
         }
     });
@@ -175,26 +179,26 @@ fn the_limits_the_slew_limit_and_what_the_gaits_need_are_read_back() {
 
 #[test]
 fn the_bars_and_the_sliders_are_read_back() {
-    for_each_robot(|name, robot, toml, _| {
-        let l = toml.lizard().links;
+    for_each_robot(|name, robot, file_robot, _| {
+        let l = file_robot.lizard().links;
         for (end, [base, left, right, a, b]) in [
             (End::Head, [l.l0, l.l1, l.l4, l.l2, l.l3]),
             (End::Tail, [l.l5, l.l6, l.l9, l.l7, l.l8]),
         ] {
             let five_bar = robot.five_bar(end);
             let scale = five_bar.bars().scale();
-            let length = |mm: f64| steps(mm, scale) as i16;
+            let length = |mm: f64| steps_of_mm(mm, scale) as i16;
             let bars = [base, left, right].map(length);
             let expected = Bars::new(bars, [a, b].map(length), scale);
             assert_eq!(*five_bar.bars(), expected, "{name} {end:?}");
-            // The lengths must fit at this scale.
-            let longest_bar = (base + left + right).max(a).max(b);
-            let fits = |bits: u32| longest_bar * f64::from(1u32 << bits) < 127.0 * 256.0;
+            // The lengths must fit into the core's numbers at this scale.
+            let longest_length = (base + left + right).max(a).max(b);
+            let fits = |bits: u32| longest_length * f64::from(1u32 << bits) < 127.0 * 256.0;
             let bits = u32::from(scale.bits);
             assert!(fits(bits), "{name} {end:?}: {bits}");
         }
         let side_offset = (l.l5 - l.l0) / 2.0;
-        let limits = toml.limits();
+        let limits = file_robot.limits();
         for (side, [offset, base, front, rear, nominal]) in [
             (
                 Side::Left,
@@ -206,7 +210,7 @@ fn the_bars_and_the_sliders_are_read_back() {
             ),
         ] {
             let core_side = robot.slider(side);
-            let length = |mm: f64| steps(mm, core_side.scale);
+            let length = |mm: f64| steps_of_mm(mm, core_side.scale);
             let lengths = [
                 f64::from(core_side.offset),
                 f64::from(core_side.base),
@@ -221,17 +225,17 @@ fn the_bars_and_the_sliders_are_read_back() {
                 f64::from(core_side.stroke_min) - (nominal + limits.stroke_min) * per_mm,
                 (nominal + limits.stroke_max) * per_mm - f64::from(core_side.stroke_max),
             ];
-            let is_inwards = inward_rounding
+            let is_rounded_inwards = inward_rounding
                 .iter()
                 .all(|steps_inward| (-1e-5..1.0).contains(steps_inward));
-            assert!(is_inwards, "{name} {side:?}: {inward_rounding:?}");
+            assert!(is_rounded_inwards, "{name} {side:?}: {inward_rounding:?}");
         }
     });
 }
 
-/// The four tables of a five-bar, each with its own argument and expected entries.
+/// A table of a five-bar's couplers. Each has its own argument.
 #[derive(Clone, Copy, PartialEq)]
-enum Shape {
+enum CurveKind {
     Rise,
     Stretched,
     Folded,
@@ -239,24 +243,29 @@ enum Shape {
 }
 
 #[test]
-fn the_curves_at_every_point_of_their_tables_are_read_back() {
-    for_each_robot(|name, robot, toml, flash| {
-        let l = toml.lizard().links;
+fn the_curves_are_read_back_at_every_point_of_their_tables() {
+    for_each_robot(|name, robot, file_robot, flash| {
+        let l = file_robot.lizard().links;
         for (end, [a, b], curves) in [
             (End::Head, [l.l2, l.l3], read_numbers(flash).curves[0]),
             (End::Tail, [l.l7, l.l8], read_numbers(flash).curves[1]),
         ] {
             let scale = robot.five_bar(end).bars().scale();
-            let [a, b] = [a, b].map(|mm| steps(mm, scale));
-            // Squared distances divided by four, in squared steps.
-            let [largest_reach, smallest_reach] =
-                [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
-            let shapes = [Shape::Rise, Shape::Stretched, Shape::Folded, Shape::Skew];
+            let [a, b] = [a, b].map(|mm| steps_of_mm(mm, scale));
+            // Squared distances of the crank tips, in units of four squared steps: with stretched and with folded
+            // couplers.
+            let [reach_sq, folded_sq] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
+            let kinds = [
+                CurveKind::Rise,
+                CurveKind::Stretched,
+                CurveKind::Folded,
+                CurveKind::Skew,
+            ];
             assert!(
                 curves[0] != 0 && (curves[3] != 0) == (a != b),
                 "{name} {end:?}"
             );
-            for (shape, address) in shapes
+            for (kind, address) in kinds
                 .into_iter()
                 .zip(curves)
                 .filter(|(_, address)| *address != 0)
@@ -267,31 +276,37 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
                     .expect("a curve")
                     .load();
                 for (index, entry) in table.into_iter().enumerate().take(ENTRY_COUNT) {
-                    let largest_argument = match shape {
-                        Shape::Rise | Shape::Skew => largest_reach,
+                    let max_argument = match kind {
+                        CurveKind::Rise | CurveKind::Skew => reach_sq,
                         // Rounded down to integers, as in the core.
-                        Shape::Stretched => (largest_reach.floor() / 4.0).floor(),
-                        Shape::Folded => smallest_reach.floor(),
+                        CurveKind::Stretched => (reach_sq.floor() / 4.0).floor(),
+                        CurveKind::Folded => folded_sq.floor(),
                     };
-                    let value = argument_at(largest_argument as u32, index) as f64;
-                    let s = match shape {
-                        Shape::Rise => value.max(
-                            2.0 * largest_reach * smallest_reach / (largest_reach + smallest_reach),
-                        ),
-                        Shape::Skew => value,
-                        Shape::Stretched => largest_reach - value,
-                        Shape::Folded => smallest_reach + value,
+                    let argument = argument_at(max_argument as u32, index) as f64;
+                    let distance_sq = match kind {
+                        CurveKind::Rise => {
+                            argument.max(2.0 * reach_sq * folded_sq / (reach_sq + folded_sq))
+                        }
+                        CurveKind::Skew => argument,
+                        CurveKind::Stretched => reach_sq - argument,
+                        CurveKind::Folded => folded_sq + argument,
                     };
-                    let exact = match shape {
-                        Shape::Skew => (a * a - b * b).abs() / 4.0 / s,
-                        _ if s <= smallest_reach || s >= largest_reach => 0.0,
-                        _ => ((largest_reach - s) * (s - smallest_reach)).sqrt() / s,
+                    let exact = match kind {
+                        CurveKind::Skew => (a * a - b * b).abs() / 4.0 / distance_sq,
+                        _ if distance_sq <= folded_sq || distance_sq >= reach_sq => 0.0,
+                        _ => {
+                            ((reach_sq - distance_sq) * (distance_sq - folded_sq)).sqrt()
+                                / distance_sq
+                        }
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
-                    // Rounding of the entry by one unit, and rounding of `s`, which matters where the curve is
+                    // The entry is rounded by one unit. `distance_sq` is rounded, too, which matters where the curve is
                     // steep.
-                    let tolerance =
-                        1.01 + exact * 2.0 / (s - smallest_reach).min(largest_reach - s).max(1.0);
+                    let tolerance = 1.01
+                        + exact * 2.0
+                            / (distance_sq - folded_sq)
+                                .min(reach_sq - distance_sq)
+                                .max(1.0);
                     let error = f64::from(entry) - exact;
                     assert!(
                         error.abs() <= tolerance,
@@ -305,9 +320,9 @@ fn the_curves_at_every_point_of_their_tables_are_read_back() {
 
 #[test]
 fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
-    for_each_robot(|name, robot, toml, _| {
-        assert_eq!(robot.gait_count(), toml.gaits().len(), "{name}");
-        for (id, gait) in GaitId::all(robot.gait_count()).zip(toml.gaits()) {
+    for_each_robot(|name, robot, file_robot, _| {
+        assert_eq!(robot.gait_count(), file_robot.gaits().len(), "{name}");
+        for (id, gait) in GaitId::all(robot.gait_count()).zip(file_robot.gaits()) {
             let gait_name = format!("{name} {}", gait.name());
             let read_name: String = robot.gait_name(id).map(char::from).collect();
             assert_eq!(read_name, gait.name().replace('-', " "), "{name}");
@@ -338,11 +353,11 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
     });
 }
 
-/// The servos of each map: the servo of its rows and the servo of its columns.
-const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
+/// The servos of each map: the row servo and the column servo.
+const MAP_SERVOS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 
-/// Reads the rows of the four maps: the row servo's sweeps in each row, and the column servo's sweeps that are
-/// certified in this row.
+/// Reads the rows of the four maps. For each row, returns the row servo's sweeps in this row, and the column servo's
+/// sweeps that are certified in it.
 fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = read_numbers(flash);
     let rows_part = numbers.parts[Part::Rows as usize];
@@ -350,14 +365,14 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
     let mut next_row = 0;
     numbers.maps.map(
         |MapHeader {
-             first_row: first,
-             row_count: count,
+             first_row,
+             row_count,
          }| {
-            let map = (0..i32::from(count)).map(|row| {
+            let map = (0..i32::from(row_count)).map(|row| {
                 let [first_column, last_column] =
                     rows.get(next_row).expect("a row").load().map(i32::from);
                 next_row += 1;
-                let row = 256 * (i32::from(first) + row);
+                let row = 256 * (i32::from(first_row) + row);
                 [
                     row..=row + 255,
                     128 * first_column..=128 * last_column + 127,
@@ -369,7 +384,7 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
 }
 
 /// True if the exact guard accepts every condition that depends on the servos of a map.
-fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
+fn accepts_conditions_of_map(robot: &Robot, map_index: usize, pose: &Pose) -> bool {
     let clearance = Clearance::of(robot, pose);
     let limits = robot.limits();
     let accepts_margins = |type2: usize, first: usize| {
@@ -378,7 +393,7 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
             && (first..first + 2)
                 .all(|index| is_kept(2 + index, limits.type1) && is_kept(6 + index, limits.leg))
     };
-    match pair {
+    match map_index {
         0 => accepts_margins(0, 0),
         1 => accepts_margins(1, 2),
         2 => robot
@@ -393,14 +408,15 @@ fn accepts(robot: &Robot, pair: usize, pose: &Pose) -> bool {
 #[test]
 fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
     let mut checked_count = 0;
-    let mut map_robot_count = 0;
+    let mut robot_with_maps_count = 0;
     for (named, section) in sections() {
         let flash = Region::new(section);
         let robot = Robot::open(flash).expect("a robot");
         let travel = robot.calibration();
-        map_robot_count += usize::from(read_numbers(flash).parts[Part::Rows as usize].count > 0);
-        for (pair, map) in read_maps(flash).into_iter().enumerate() {
-            let servos = PAIRS[pair];
+        robot_with_maps_count +=
+            usize::from(read_numbers(flash).parts[Part::Rows as usize].count > 0);
+        for (map_index, map) in read_maps(flash).into_iter().enumerate() {
+            let servos = MAP_SERVOS[map_index];
             for [row, columns] in map {
                 let cells = (*columns.start()..*columns.end()).step_by(128);
                 for cell in cells {
@@ -417,7 +433,10 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
                         }
                         if is_inside {
                             let name = &named.name;
-                            assert!(accepts(&robot, pair, &pose), "{name}: {pair} {pose:?}");
+                            assert!(
+                                accepts_conditions_of_map(&robot, map_index, &pose),
+                                "{name}: map {map_index} {pose:?}"
+                            );
                             checked_count += 1;
                         }
                     }
@@ -425,10 +444,10 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
             }
         }
     }
-    println!("{checked_count} poses of cells, {map_robot_count} robots with maps");
+    println!("{checked_count} poses of cells, {robot_with_maps_count} robots with maps");
     assert!(
-        map_robot_count >= 5 && checked_count > 100_000,
-        "{map_robot_count} {checked_count}"
+        robot_with_maps_count >= 5 && checked_count > 100_000,
+        "{robot_with_maps_count} {checked_count}"
     );
 }
 
@@ -443,14 +462,14 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         for n in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
             for (sweep, travel) in pose.0.iter_mut().zip(robot.calibration()) {
-                // Any sweep, any within the travel, or any near neutral.
+                // Any sweep, a sweep within the travel, or a sweep near neutral.
                 *sweep = Sweep(match n % 3 {
                     0 => rng.i16(..),
                     1 => rng.i16(travel.travel_min.0..=travel.travel_max.0),
                     _ => rng.i16(-3000..3000),
                 });
             }
-            let is_in_maps = PAIRS.iter().zip(&maps).all(|(servos, map)| {
+            let is_in_maps = MAP_SERVOS.iter().zip(&maps).all(|(servos, map)| {
                 let [row, column] = servos.map(|servo| i32::from(pose.0[servo].0));
                 map.iter()
                     .any(|[rows, columns]| rows.contains(&row) && columns.contains(&column))
@@ -478,10 +497,10 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
 }
 
 #[test]
-fn another_robot_has_another_hash_and_the_maps_change_nothing_in_it() {
+fn different_robots_have_different_hashes_which_do_not_depend_on_the_maps() {
     let mut hashes = std::collections::HashMap::new();
-    for_each_robot(|name, robot, toml, _| {
-        assert_eq!(robot.hash(), toml.firmware().hash(), "{name}");
+    for_each_robot(|name, robot, file_robot, _| {
+        assert_eq!(robot.hash(), file_robot.firmware().hash(), "{name}");
     });
     for (named, section) in sections() {
         let hash = Robot::open(Region::new(section)).expect("a robot").hash();

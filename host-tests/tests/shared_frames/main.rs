@@ -1,4 +1,4 @@
-//! Tests that functions with shared prologues and epilogues behave as with prologues and epilogues of their own.
+//! Tests that functions with shared prologues and epilogues compute the same results as with their own.
 
 use std::fs;
 
@@ -10,8 +10,8 @@ use simulated_uno::{Fidelity, Image, Uno};
 
 mod random_programs;
 
-/// A program that sorts, divides, mixes and recurses with many registers and large frames, while a
-/// timer interrupts it. Its results remain in RAM.
+/// A program that sorts, divides, mixes and recurses with many registers and large stack frames while a timer
+/// interrupts it. Its results are in RAM.
 const PROGRAM: &str = r#"
 #include <avr/io.h>
 #include <avr/interrupt.h>
@@ -80,19 +80,19 @@ int main(void) {
 "#;
 
 /// Returns the address of a variable in RAM.
-fn address(image: &Image, name: &str) -> u16 {
-    (image.symbol(name).expect("it has one").address - 0x80_0000) as u16
+fn address_of(image: &Image, name: &str) -> u16 {
+    (image.symbol(name).expect("the variable exists").address - 0x80_0000) as u16
 }
 
-/// Runs the program and returns its results and the depth of its stack.
+/// Runs the program. Returns its results and the depth of its stack.
 fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
-    let [done_address, results_address] = ["done", "results"].map(|name| address(image, name));
+    let [done_address, results_address] = ["done", "results"].map(|name| address_of(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(200);
     assert_eq!(
         uno.peek(done_address),
         1,
-        "it came to its end, interrupted often"
+        "the program ends, and a timer has interrupted it often"
     );
     let bytes = (0..160)
         .map(|byte| uno.peek(results_address + byte))
@@ -101,16 +101,16 @@ fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
 }
 
 #[test]
-fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
-    let object = compile_to_object(PROGRAM).expect("it compiles");
+fn a_program_computes_the_same_with_shared_prologues_and_epilogues() {
+    let object = compile_to_object(PROGRAM).expect("the program compiles");
     let (shrunk, savings) = shrink(&object)
-        .expect("it is an object")
-        .expect("of an AVR");
+        .expect("the object is valid")
+        .expect("the object is for an AVR");
     assert!(savings.frames > 100, "{savings:?}");
-    // The linker shortens two of the three branches over jumps in `jumps`.
+    // In `jumps`, the linker shortens two of the three branches over jumps.
     assert_eq!(savings.branches, 2, "{savings:?}");
-    let plain_image = link("", &object).expect("it links");
-    let shrunk_image = link(ROUTINES, &shrunk).expect("it links");
+    let plain_image = link("", &object).expect("the object links");
+    let shrunk_image = link(ROUTINES, &shrunk).expect("the object links");
     assert!(shrunk_image.symbol("__frame_save_2").is_some());
     let ((plain_results, plain_depth), (shrunk_results, shrunk_depth)) = (
         run_for_results(&plain_image),
@@ -118,16 +118,15 @@ fn a_program_computes_the_same_with_shared_beginnings_and_ends() {
     );
     assert_eq!(plain_results, shrunk_results);
     assert!(plain_results.iter().any(|byte| *byte != 0));
-    // Ten frames of `deep` are on the stack at once; each may save one more register.
+    // Ten stack frames of `deep` exist at once, and each may save one more register.
     assert!(
         shrunk_depth.abs_diff(plain_depth) < 40,
         "{plain_depth} {shrunk_depth}"
     );
 }
 
-/// A program with a function whose last argument lies on the stack, above the registers that the function
-/// pushes. The function skips some registers between the first and the last that it pushes, and has
-/// variables on the stack, too.
+/// A program with a function whose last argument is on the stack, above the registers that the function pushes. The
+/// function does not push all registers between the first and the last one, and has variables on the stack.
 const STACK_ARGUMENT: &str = r#"
 #include <stdint.h>
 volatile uint8_t done, sum;
@@ -147,10 +146,11 @@ int main(void) { result = last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
 
 #[test]
 fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
-    let object = compile_to_object(STACK_ARGUMENT).expect("it compiles");
-    let shrunk = shrink(&object).expect("it is an object");
-    let image = link(ROUTINES, &shrunk.expect("of an AVR").0).expect("it links");
-    let [done_address, result_address] = ["done", "result"].map(|name| address(&image, name));
+    let object = compile_to_object(STACK_ARGUMENT).expect("the program compiles");
+    let shrunk = shrink(&object).expect("the object is valid");
+    let image =
+        link(ROUTINES, &shrunk.expect("the object is for an AVR").0).expect("the object links");
+    let [done_address, result_address] = ["done", "result"].map(|name| address_of(&image, name));
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.run_ms(10);
     assert_eq!(uno.peek(done_address), 1);
@@ -161,33 +161,33 @@ fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
 }
 
 #[test]
-fn callers_do_not_rely_on_what_a_shared_beginning_changes() {
-    let flags = fs::read_to_string(root().join(".cargo/config.toml")).expect("it is there");
+fn callers_do_not_rely_on_registers_that_a_shared_prologue_changes() {
+    let flags = fs::read_to_string(root().join(".cargo/config.toml")).expect(".cargo/config.toml");
     let passes = flags.lines().find(|line| line.contains("\"-Cllvm-args="));
-    let passes = passes.expect("passes are left out");
+    let passes = passes.expect("the list of LLVM passes");
     assert!(!passes.contains("ipra"), "{passes}");
 }
 
-/// The call-saved registers, which a function must restore before it returns.
-const CALL_SAVED: [u8; 18] = [
+/// The call-saved registers, which a function restores before it returns.
+const CALL_SAVED_REGISTERS: [u8; 18] = [
     2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 28, 29,
 ];
 
-/// Returns a program that calls a function forty times, while a timer interrupts every 61 cycles. The function
-/// saves the registers from `first_register` on, reserves `room_bytes` bytes, overwrites both, restores the
-/// registers and returns. At the end, the program stores the registers and the stack pointer in RAM.
+/// Returns a program that calls a function forty times while a timer interrupts it every 61 cycles. The function saves
+/// the registers from `first_register` on, reserves `room_bytes` bytes, overwrites both, restores the registers and
+/// returns. At the end, the program stores the registers and the stack pointer in RAM.
 fn frame_program(first_register: u8, room_bytes: u8) -> String {
     let load = |registers: &[u8], increment: u8| -> String {
-        let register_iter = registers.iter();
-        register_iter
+        registers
+            .iter()
             .map(|register| format!("ldi r24, {} $ mov r{register}, r24\n", register + increment))
             .collect()
     };
-    let saved_registers: Vec<u8> = CALL_SAVED
+    let saved_registers: Vec<u8> = CALL_SAVED_REGISTERS
         .into_iter()
         .filter(|register| *register >= first_register)
         .collect();
-    let store_code: String = CALL_SAVED
+    let store_code: String = CALL_SAVED_REGISTERS
         .iter()
         .map(|register| format!("sts {}, r{register}\n", 0x100 + u16::from(*register)))
         .collect();
@@ -211,7 +211,7 @@ fn frame_program(first_register: u8, room_bytes: u8) -> String {
         ldi r24, 1 $ sts 0x145, r24
     end: rjmp end
     framed: ldi r26, {room_bytes} $ call __frame_save_{first_register}
-        ; All of the room is below r29:r28, and nothing of it is anybody else's.
+        ; The room begins one byte above the address in r29:r28, and belongs only to this function.
         movw r30, r28 $ ldi r24, {room_bytes} $ ldi r25, 0x55
     fill: subi r24, 1 $ brcs filled $ adiw r30, 1 $ st Z, r25 $ rjmp fill
     filled: in r24, SPL $ cp r24, r28 $ breq same $ inc r20
@@ -222,13 +222,13 @@ fn frame_program(first_register: u8, room_bytes: u8) -> String {
         ldi r21, 1
         pop r1 $ pop r0 $ out SREG, r0 $ pop r0 $ reti
     {ROUTINES}",
-        load_all = load(&CALL_SAVED, 100),
+        load_all = load(&CALL_SAVED_REGISTERS, 100),
         load_saved = load(&saved_registers, 7),
     )
 }
 
 #[test]
-fn every_shared_beginning_and_its_end_leave_registers_and_stack_as_they_were() {
+fn every_shared_prologue_and_epilogue_restores_registers_and_stack() {
     for first_register in FIRST_REGISTERS {
         for room_bytes in [0, 1, 5, 63, 64, 200, 255] {
             let image = assemble(&frame_program(first_register, room_bytes));
@@ -237,9 +237,9 @@ fn every_shared_beginning_and_its_end_leave_registers_and_stack_as_they_were() {
             assert_eq!(
                 uno.peek(0x145),
                 1,
-                "it came to its end: {first_register} {room_bytes}"
+                "the program ends: {first_register} {room_bytes}"
             );
-            for register in CALL_SAVED {
+            for register in CALL_SAVED_REGISTERS {
                 let value = uno.peek(0x100 + u16::from(register));
                 assert_eq!(
                     value,
@@ -258,7 +258,7 @@ fn every_shared_beginning_and_its_end_leave_registers_and_stack_as_they_were() {
                 0,
                 "r28 is the stack pointer: {first_register} {room_bytes}"
             );
-            assert_eq!(uno.peek(0x144), 1, "it was interrupted");
+            assert_eq!(uno.peek(0x144), 1, "the timer has interrupted the program");
         }
     }
 }

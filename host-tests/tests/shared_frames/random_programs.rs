@@ -1,7 +1,7 @@
-//! Test that random C functions compute the same before and after the linker rewrites them.
+//! Test that random C functions compute the same results before and after the linker rewrites them.
 //!
-//! The functions have up to 30 bytes of arguments, of which 18 fit into registers. Their arrays lie on
-//! the stack, they call one another, and a timer interrupts them.
+//! The functions have up to 30 bytes of arguments, of which 18 fit into registers. Their arrays are on the stack, they
+//! call one another, and a timer interrupts them.
 
 use std::iter;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -13,18 +13,18 @@ use lizard_host_tests::scaled;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
-use crate::address;
+use crate::address_of;
 
-/// Number of functions of one program, as many as 32 KB hold.
-const FUNCTIONS: usize = 40;
+/// Number of functions of one program, as many as fit into 32 KB.
+const FUNCTION_COUNT: usize = 40;
 
-/// Number of functions in a group. A function calls only others of its group, so that the stack suffices.
-const GROUP: usize = 5;
+/// Number of functions in a group. A function calls only functions of its group, so that the stack is large enough.
+const GROUP_SIZE: usize = 5;
 
-/// Number of programs in an ordinary run; together they have 800 functions.
-const PROGRAMS: u64 = 20;
+/// Number of programs in an ordinary run. Together they have 800 functions.
+const PROGRAM_COUNT: u64 = 20;
 
-/// Types of arguments, and the bytes of registers that an argument of each type takes.
+/// Types of arguments, each with the bytes of registers that an argument of this type takes.
 const TYPES: [(&str, usize); 5] = [
     ("uint8_t", 2),
     ("uint16_t", 2),
@@ -33,29 +33,29 @@ const TYPES: [(&str, usize); 5] = [
     ("int8_t", 2),
 ];
 
-/// Returns a random expression of these variables.
-fn random_expression(random: &mut Rng, names: &[String], depth: u8) -> String {
-    if depth > 1 || random.u8(..4) == 0 {
-        return match random.usize(..=names.len()) {
+/// Returns a random expression with these variables.
+fn random_expression(rng: &mut Rng, names: &[String], depth: u8) -> String {
+    if depth > 1 || rng.u8(..4) == 0 {
+        return match rng.usize(..=names.len()) {
             index if index < names.len() => names[index].clone(),
-            _ => format!("{}u", random.u32(..70_000)),
+            _ => format!("{}u", rng.u32(..70_000)),
         };
     }
-    let [a, b] = [0; 2].map(|_| random_expression(random, names, depth + 1));
-    match random.usize(..9) {
+    let [a, b] = [0; 2].map(|_| random_expression(rng, names, depth + 1));
+    match rng.usize(..9) {
         operator @ 0..5 => format!("({a} {} {b})", ["+", "-", "^", "&", "|"][operator]),
         operator @ 5..7 => format!("({a} {} ({b} & 7))", ["<<", ">>"][operator - 5]),
         7 => format!("((uint16_t){a} * (uint16_t){b})"),
-        _ => format!("({a} {} {b})", random.choice(["<", "==", "!="]).unwrap()),
+        _ => format!("({a} {} {b})", rng.choice(["<", "==", "!="]).unwrap()),
     }
 }
 
 /// Writes the next function, which may call an earlier one, and adds its argument types to `signatures`.
-fn random_function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
+fn random_function(rng: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
     let number = signatures.len();
     let (mut types, mut bytes) = (Vec::new(), 0);
-    for _ in 0..random.usize(5..11) {
-        let (name, size) = TYPES[random.usize(..TYPES.len())];
+    for _ in 0..rng.usize(5..11) {
+        let (name, size) = TYPES[rng.usize(..TYPES.len())];
         bytes += size;
         if bytes <= 30 {
             types.push(name);
@@ -67,24 +67,24 @@ fn random_function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) ->
         .collect();
     let mut names: Vec<String> = (0..types.len()).map(|index| format!("p{index}")).collect();
     let arguments = names.clone();
-    let [room_size, limit] = [random.usize(3..30), random.usize(..60_000)];
+    let [room_size, limit] = [rng.usize(3..30), rng.usize(..60_000)];
     let last_index = room_size - 1;
     names.push("i".into());
-    let fill_value = random_expression(random, &names, 0);
+    let fill_value = random_expression(rng, &names, 0);
     names.push("sum".into());
-    let [condition, subtrahend] = [0; 2].map(|_| random_expression(random, &names, 0));
+    let [condition, subtrahend] = [0; 2].map(|_| random_expression(rng, &names, 0));
     names.retain(|name| name != "i");
-    let group_start = number / GROUP * GROUP;
-    let call = if number > group_start && random.u8(..5) > 0 {
-        let callee = random.usize(group_start..number);
+    let group_start = number / GROUP_SIZE * GROUP_SIZE;
+    let call = if number > group_start && rng.u8(..5) > 0 {
+        let callee = rng.usize(group_start..number);
         let values = signatures[callee].iter();
-        let values = values.map(|name| format!("({name}){}", random_expression(random, &names, 1)));
+        let values = values.map(|name| format!("({name}){}", random_expression(rng, &names, 1)));
         let values: Vec<String> = values.collect();
         format!("sum ^= f{callee}({});", values.join(", "))
     } else {
         String::new()
     };
-    let [odd_test, addend] = [0; 2].map(|_| random_expression(random, &arguments, 0));
+    let [odd_test, addend] = [0; 2].map(|_| random_expression(rng, &arguments, 0));
     signatures.push(types);
     format!(
         "__attribute__((noinline, noclone)) uint16_t f{number}({parameters}) {{
@@ -107,15 +107,15 @@ fn random_function(random: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) ->
 }
 
 /// Returns a program that calls each of its functions twice and stores the return values.
-fn random_program(random: &mut Rng) -> String {
+fn random_program(rng: &mut Rng) -> String {
     let mut signatures = Vec::new();
-    let functions: String = (0..FUNCTIONS)
-        .map(|_| random_function(random, &mut signatures))
+    let functions: String = (0..FUNCTION_COUNT)
+        .map(|_| random_function(rng, &mut signatures))
         .collect();
     let mut calls = String::new();
-    for call in 0..2 * FUNCTIONS {
+    for call in 0..2 * FUNCTION_COUNT {
         let values = signatures[call / 2].iter();
-        let values: Vec<String> = values.map(|_| random.u16(..).to_string()).collect();
+        let values: Vec<String> = values.map(|_| rng.u16(..).to_string()).collect();
         let values = values.join(", ");
         calls += &format!("results[{call}] = f{}({values});\n", call / 2);
     }
@@ -134,14 +134,14 @@ fn random_program(random: &mut Rng) -> String {
             cli(); done = ticks > 20;
             for (;;) {{}}
         }}",
-        level = random.choice(["O1", "O2", "Os"]).unwrap(),
-        count = 2 * FUNCTIONS,
+        level = rng.choice(["O1", "O2", "Os"]).unwrap(),
+        count = 2 * FUNCTION_COUNT,
     )
 }
 
 /// Runs a program and returns the two return values of each function.
 fn run_for_results(image: &Image) -> Vec<[u8; 4]> {
-    let [done_address, results_address] = ["done", "results"].map(|name| address(image, name));
+    let [done_address, results_address] = ["done", "results"].map(|name| address_of(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     for _ in 0..200 {
         uno.run_ms(5);
@@ -152,56 +152,59 @@ fn run_for_results(image: &Image) -> Vec<[u8; 4]> {
     assert_eq!(
         uno.peek(done_address),
         1,
-        "it came to its end, interrupted often"
+        "the program ends, and a timer has interrupted it often"
     );
     let values_of =
         |function| [0, 1, 2, 3].map(|byte| uno.peek(results_address + 4 * function + byte));
-    (0..FUNCTIONS as u16).map(values_of).collect()
+    (0..FUNCTION_COUNT as u16).map(values_of).collect()
 }
 
-/// Returns the functions of a program that return another value after the linker has rewritten it, and true if
-/// the linker has rewritten any function. `None` if avr-gcc fails because it runs out of registers or a branch
-/// is too far.
-fn differences(seed: u64) -> Option<(Vec<usize>, bool)> {
+/// Returns the functions of a random program that return other values after the linker has rewritten it, and true if
+/// the linker has rewritten a function. `None` if avr-gcc fails, because it runs out of registers or a branch is too
+/// far.
+fn find_differences(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = compile_to_object(&random_program(&mut Rng::with_seed(seed))).ok()?;
     let plain_image = link("", &object).ok()?;
     let (object, savings) = shrink(&object)
-        .expect("it is an object")
-        .expect("of an AVR");
-    let shrunk_image = link(ROUTINES, &object).expect("it links as before");
+        .expect("the object is valid")
+        .expect("the object is for an AVR");
+    let shrunk_image = link(ROUTINES, &object).expect("the rewritten object links");
     let [plain_results, shrunk_results] = [
         run_for_results(&plain_image),
         run_for_results(&shrunk_image),
     ];
     let differing =
-        (0..FUNCTIONS).filter(|&number| plain_results[number] != shrunk_results[number]);
+        (0..FUNCTION_COUNT).filter(|&number| plain_results[number] != shrunk_results[number]);
     Some((differing.collect(), savings.frames > 0))
 }
 
 #[test]
 fn random_functions_with_arguments_on_the_stack_compute_the_same() {
-    let seeds = scaled(PROGRAMS);
+    let seed_count = scaled(PROGRAM_COUNT);
     let next_seed = AtomicU64::new(0);
-    let claim = || Some(next_seed.fetch_add(1, Relaxed)).filter(|&seed| seed < seeds);
+    let take_seed = || Some(next_seed.fetch_add(1, Relaxed)).filter(|&seed| seed < seed_count);
     let run_share = || -> Vec<_> {
-        iter::from_fn(claim)
-            .filter_map(|seed| Some((seed, differences(seed)?)))
+        iter::from_fn(take_seed)
+            .filter_map(|seed| Some((seed, find_differences(seed)?)))
             .collect()
     };
-    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let thread_count = thread::available_parallelism().map_or(1, usize::from);
     let tried_programs: Vec<_> = thread::scope(|scope| {
-        let shares: Vec<_> = (0..cores).map(|_| scope.spawn(run_share)).collect();
+        let shares: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_share)).collect();
         let finished = shares.into_iter().map(|share| share.join());
         finished
             .flat_map(|result| result.expect("no thread panics"))
             .collect()
     });
     for (seed, (differing, is_rewritten)) in &tried_programs {
-        assert!(differing.is_empty(), "of program {seed}: {differing:?}");
-        assert!(is_rewritten, "program {seed} has frames to share");
+        assert!(
+            differing.is_empty(),
+            "program {seed}: these functions differ: {differing:?}"
+        );
+        assert!(is_rewritten, "program {seed}: no function was rewritten");
     }
     assert!(
-        tried_programs.len() as u64 >= seeds * 9 / 10,
+        tried_programs.len() as u64 >= seed_count * 9 / 10,
         "{}",
         tried_programs.len()
     );

@@ -1,11 +1,10 @@
-//! A command that runs in the root of the repository as a user starts it: a test reads its screen while
-//! it runs, types lines, and ends it with Ctrl-C.
+//! Shell for tests: starts a command in the root of the repository as a user does. While the command runs, a test reads
+//! its output, types lines, and ends it with Ctrl-C.
 //!
-//! A process inherits from its parent the signals that it ignores, and a shell without job control
-//! makes commands that it starts with `&` ignore Ctrl-C. If these tests are started with `&`, a command
-//! would also ignore Ctrl-C until it sets a handler of its own. So the command starts with the default
-//! signals, as from a user's shell.
-#![allow(dead_code)] // each test uses a part of it
+//! A shell without job control makes the commands that it starts with `&` ignore Ctrl-C, and a process inherits the
+//! ignored signals from its parent. If these tests are started with `&`, a command would therefore ignore Ctrl-C until
+//! it sets its own handler. So the command starts with the default signals, as from a user's shell.
+#![allow(dead_code)] // each test program uses a part of this module
 
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;
@@ -21,8 +20,9 @@ use rustix::process::{Pid, Signal, kill_process_group};
 /// The time after which Ctrl-C is pressed again.
 const CTRL_C_INTERVAL: Duration = Duration::from_secs(1);
 
+/// A running command, with its keyboard and its screen.
 pub struct Shell {
-    line: String,
+    command_line: String,
     child: Mutex<Child>,
     keyboard: ChildStdin,
     screen: Arc<Mutex<Vec<u8>>>,
@@ -34,7 +34,7 @@ impl Shell {
         let mut command = Command::new("env");
         command.args(["--default-signal=INT,QUIT", program]);
         command.args(arguments).current_dir(root());
-        // A user's shell does not have the variables of the cargo and make around this test.
+        // A user's shell does not have the variables of the cargo and make that run this test.
         for (name, _) in std::env::vars() {
             let is_of_cargo = name.starts_with("CARGO") && name != "CARGO_HOME";
             if is_of_cargo || name.starts_with("MAKE") || name == "MFLAGS" {
@@ -48,14 +48,14 @@ impl Shell {
         let mut child = command.spawn().expect("the command starts");
         let screen = Arc::default();
         let readers = [
-            spawn_reader(child.stdout.take().expect("it is piped"), &screen),
-            spawn_reader(child.stderr.take().expect("it is piped"), &screen),
+            spawn_reader(child.stdout.take().expect("a pipe"), &screen),
+            spawn_reader(child.stderr.take().expect("a pipe"), &screen),
         ];
         // The pipe stays open, since ravedude's console reads without a pause at the end of its input.
-        let keyboard = child.stdin.take().expect("it is piped");
+        let keyboard = child.stdin.take().expect("a pipe");
         let child = Mutex::new(child);
         Self {
-            line: [&[program], arguments].concat().join(" "),
+            command_line: [&[program], arguments].concat().join(" "),
             child,
             keyboard,
             screen,
@@ -65,12 +65,11 @@ impl Shell {
 
     /// Returns everything printed so far.
     pub fn screen(&self) -> String {
-        let screen = self.screen.lock().expect("nobody panics with it");
+        let screen = self.screen.lock().expect("no thread has panicked");
         String::from_utf8_lossy(&screen).into_owned()
     }
 
-    /// Returns everything printed by a command that has ended. Waits for its last output, which may still be in
-    /// a pipe.
+    /// Returns everything printed by a command that has ended. Waits for the last output, which may still be in a pipe.
     pub fn last_screen(&self) -> String {
         let is_read = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
         let screen = self.screen();
@@ -78,17 +77,17 @@ impl Shell {
         screen
     }
 
+    /// Types a line.
     pub fn say(&mut self, line: &str) {
         writeln!(self.keyboard, "{line}").expect("the command reads");
     }
 
     pub fn has_ended(&self) -> bool {
-        let mut child = self.child.lock().expect("nobody panics with it");
-        child.try_wait().expect("it is our child").is_some()
+        let mut child = self.child.lock().expect("no thread has panicked");
+        child.try_wait().expect("a child of this process").is_some()
     }
 
-    /// Presses Ctrl-C repeatedly until the command ends. The test fails if the command
-    /// never ends.
+    /// Presses Ctrl-C repeatedly until the command ends. The test fails if the command never ends.
     pub fn interrupt(&mut self) {
         let mut pressed_at: Option<Instant> = None;
         let has_ended = LIMIT.wait_for(|| {
@@ -101,17 +100,17 @@ impl Shell {
             }
             false
         });
-        let (line, screen) = (&self.line, self.screen());
+        let (command_line, screen) = (&self.command_line, self.screen());
         assert!(
             has_ended,
-            "waited {LIMIT} for the end of `{line}` by Ctrl-C:\n{screen}"
+            "waited {LIMIT} for the end of `{command_line}` by Ctrl-C:\n{screen}"
         );
     }
 
     /// Sends a signal to the command and all its children.
     fn signal(&self, signal: Signal) {
-        let child = self.child.lock().expect("nobody panics with it");
-        // A command that has ended meanwhile needs no signal.
+        let child = self.child.lock().expect("no thread has panicked");
+        // An error means that the command has already ended.
         let _ = kill_process_group(Pid::from_child(&child), signal);
     }
 }
@@ -120,7 +119,7 @@ impl Drop for Shell {
     fn drop(&mut self) {
         if !self.has_ended() {
             self.signal(Signal::KILL);
-            let _ = LIMIT.wait_for_exit(self.child.get_mut().expect("nobody panics with it"));
+            let _ = LIMIT.wait_for_exit(self.child.get_mut().expect("no thread has panicked"));
         }
     }
 }
@@ -133,7 +132,7 @@ fn spawn_reader(
     thread::spawn(move || {
         let mut bytes = [0; 1024];
         while let Ok(count @ 1..) = pipe.read(&mut bytes) {
-            let mut screen = screen.lock().expect("nobody panics with it");
+            let mut screen = screen.lock().expect("no thread has panicked");
             screen.extend_from_slice(&bytes[..count]);
         }
     })

@@ -10,7 +10,7 @@ use crate::rule::Rule;
 const MAX_WAKE_TIME: Time = 600 * MS;
 
 /// Time after an answer that promises no pulses in which no pulse may begin.
-const NO_PULSES_TIME: Time = 140 * MS;
+pub(crate) const NO_PULSES_TIME: Time = 140 * MS;
 
 /// Longest time from `rest` until the complete record of the rest pose is in the EEPROM.
 const MAX_SAVE_TIME: Time = 400 * MS;
@@ -58,7 +58,7 @@ impl Observer {
                         Rule::RestEndsPulses,
                     ));
                 }
-                let min_good_mv = self.limits.levels_mv[0] + crate::supply::GOOD_MARGIN_MV;
+                let min_good_mv = self.limits.min_good_mv();
                 let is_good = self.supply.is_good_since(self.first_rest_at, min_good_mv);
                 let is_repeated = self.first_rest_at > self.started_at
                     && asked_at > self.first_rest_at + MAX_SAVE_TIME;
@@ -123,7 +123,7 @@ impl Observer {
     /// good and main has been undisturbed for long enough to save the pose.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
         let last_whole_start = self.servos[servo].last_whole_start;
-        let min_good_mv = self.limits.levels_mv[0] + crate::supply::GOOD_MARGIN_MV;
+        let min_good_mv = self.limits.min_good_mv();
         self.limits.is_memory_reliable
             && self.now - last_whole_start > MAX_SAVE_TIME
             && self.supply.is_good_since(last_whole_start, min_good_mv)

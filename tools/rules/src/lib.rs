@@ -20,5 +20,4 @@ mod supply;
 
 pub use event::{Event, MS, Pulse, Time};
 pub use observer::{Limits, Observer};
-pub use print::rounded_age_frames;
 pub use rule::{BrokenRule, Rule};

@@ -59,6 +59,15 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// Returns the lowest supply that counts as good, mV.
+    pub(crate) fn min_good_mv(&self) -> u32 {
+        /// Margin above the level for writing.
+        const MARGIN_MV: u32 = 200;
+        self.levels_mv[0] + MARGIN_MV
+    }
+}
+
 /// An observer that judges a robot's events by the rules.
 #[derive(Clone, Debug)]
 pub struct Observer {
@@ -274,7 +283,7 @@ impl Observer {
                 }
             }
             Event::SupplyMv(mv) => {
-                let min_good_mv = self.limits.levels_mv[0] + crate::supply::GOOD_MARGIN_MV;
+                let min_good_mv = self.limits.min_good_mv();
                 self.supply.record(time, mv, min_good_mv);
             }
             Event::ByteReceived => self.permission.boot_grant_at = None,

@@ -6,7 +6,7 @@ use crate::event::{MS, Time};
 use crate::observer::Observer;
 
 /// Rounds an age down to one of a few classes. Returns the smallest number of frames in the class.
-pub const fn rounded_age_frames(age: Time) -> u8 {
+const fn rounded_age_frames(age: Time) -> u8 {
     match age / (20 * MS) {
         ..=0 => 0,
         1..=3 => 1,

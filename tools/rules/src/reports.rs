@@ -4,6 +4,7 @@ use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
 use lizard_core::virtual_board::is_answer;
 
+use crate::answers::NO_PULSES_TIME;
 use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
@@ -178,7 +179,7 @@ impl Observer {
         if gait == Some("rest") {
             self.pending.no_pulses = Some((
                 now + self.limits.max_frame_remainder,
-                now + 140 * MS,
+                now + NO_PULSES_TIME,
                 Rule::NoPulsesInRest,
             ));
         } else if !has_fault

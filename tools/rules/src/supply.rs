@@ -4,9 +4,6 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Margin above the level for writing from which the supply counts as good, mV.
-pub(crate) const GOOD_MARGIN_MV: u32 = 200;
-
 /// Time for which the supply must be low before the robot may react: six frames, less one frame before the first
 /// reading and one frame after the last.
 const MIN_LOW_TIME: Time = 80 * MS;

@@ -6,7 +6,9 @@
 //! that of `lizard tune` with the same parameters.
 
 use lizard_robot::Bars;
-use lizard_tune::{Comparison, Kind, ScoredParameters, Search, Tuning, TuningError, trials};
+use lizard_tune::{
+    Comparison, GaitKind, ScoredParameters, Search, Tuning, TuningError, trial_count,
+};
 use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
@@ -63,8 +65,8 @@ pub struct Found {
 #[derive(Debug, Clone)]
 pub struct FasterSearch {
     tuning: Tuning,
-    /// The searches by kind of gait, in the order of [`Kind::ALL`].
-    searches: [Search; Kind::ALL.len()],
+    /// The searches by kind of gait, in the order of [`GaitKind::ALL`].
+    searches: [Search; GaitKind::ALL.len()],
     /// Index of the kind whose gaits are being tried.
     kind_index: usize,
     /// Scores of this kind's gaits in the current round, so far.
@@ -94,7 +96,7 @@ impl FasterSearch {
             TuningError::Rate { .. } => refusal_of("rate", format!("servos of at most {error}")),
         })?;
         Ok(Self {
-            searches: Kind::ALL.map(|kind| tuning.search(kind)),
+            searches: GaitKind::ALL.map(|kind| tuning.search(kind)),
             tuning,
             kind_index: 0,
             scores: Vec::new(),
@@ -102,7 +104,7 @@ impl FasterSearch {
                 done: 0,
                 best: None,
             },
-            trial_count: Kind::ALL.len() * trials(task.rounds),
+            trial_count: GaitKind::ALL.len() * trial_count(task.rounds),
         })
     }
 
@@ -119,15 +121,17 @@ impl FasterSearch {
         if self.progress.done < self.trial_count {
             let search = &mut self.searches[self.kind_index];
             let parameters = &search.trials()[self.scores.len()];
-            let score = self.tuning.score(Kind::ALL[self.kind_index], parameters);
+            let score = self
+                .tuning
+                .score(GaitKind::ALL[self.kind_index], parameters);
             self.scores.push(score);
             self.progress.done += 1;
             if score > self.progress.best {
                 self.progress.best = score;
             }
             if self.scores.len() == search.trials().len() {
-                search.score(self.scores.drain(..));
-                self.kind_index = (self.kind_index + 1) % Kind::ALL.len();
+                search.accept_scores(self.scores.drain(..));
+                self.kind_index = (self.kind_index + 1) % GaitKind::ALL.len();
             }
         }
         self.progress.clone()
@@ -138,11 +142,11 @@ impl FasterSearch {
     pub fn best_so_far(&self, robots: usize) -> Option<Found> {
         let mut searches = self.searches.clone();
         if !self.scores.is_empty() {
-            searches[self.kind_index].score(self.scores.iter().copied());
+            searches[self.kind_index].accept_scores(self.scores.iter().copied());
         }
-        let kinds = Kind::ALL.into_iter().zip(&searches);
+        let kinds = GaitKind::ALL.into_iter().zip(&searches);
         let scored_parameters = kinds.flat_map(|(kind, search)| {
-            let found = search.found().into_iter();
+            let found = search.ranked_results().into_iter();
             found.map(move |(score, parameters)| ScoredParameters {
                 kind,
                 score,
@@ -199,12 +203,12 @@ mod tests {
         let walk = robot.gait("walk").expect("the robot has this gait");
         let tuning = Tuning::new(&robot, robot.ground(), walk, None, "walk", 3)
             .expect("`walk` goes straight ahead");
-        let round_parameters = tuning.search(Kind::Wave).trials().to_vec();
+        let round_parameters = tuning.search(GaitKind::Wave).trials().to_vec();
         let tried_parameters = round_parameters
             .into_iter()
             .take(3)
             .filter_map(|parameters| {
-                let kind = Kind::Wave;
+                let kind = GaitKind::Wave;
                 let score = tuning.score(kind, &parameters)?;
                 Some(ScoredParameters {
                     kind,

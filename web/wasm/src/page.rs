@@ -161,7 +161,7 @@ impl Page {
         let to_us = |width: u32| f64::from(width) / CYCLES_PER_US;
         let state = twin.push(widths.map(|width| (width > 0).then(|| to_us(width))));
         self.targets = std::array::from_fn(|i| state.angles[i] + state.errors[i]);
-        Some(frame_of(twin, &state, state.slip))
+        Some(frame_of(twin, &state, state.slips))
     }
 
     /// Moves the robot to a pose that a real robot reports `frames` frames after its previous pose; angles in deg,
@@ -182,7 +182,7 @@ impl Page {
             let state = twin.push_angles(std::array::from_fn(|i| {
                 neutral[i] + FORWARD_TURN_SIGN[i] * sweep_at(i)
             }));
-            slides = std::array::from_fn(|i| slides[i] + state.slip[i]);
+            slides = std::array::from_fn(|i| slides[i] + state.slips[i]);
             state
         };
         (1..frames).for_each(|n| {
@@ -216,7 +216,7 @@ impl Page {
         };
         if let Some(model) = servo_model(twin.robot(), name) {
             self.model_name = Some(name.to_owned());
-            twin.set_servos(model);
+            twin.set_servo_model(model);
         }
     }
 
@@ -323,7 +323,7 @@ fn frame_of(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
         fault,
         place: state.place.into(),
         slides,
-        lag: state.lag,
+        lag: state.lags,
         errors: state.errors,
     }
 }

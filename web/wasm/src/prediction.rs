@@ -75,11 +75,11 @@ impl GaitPrediction {
     #[must_use]
     pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
         let prediction = Self::with_ideal_servos(gait, twin.ground());
-        let ServoModel::Motors(motors) = twin.servos() else {
+        let ServoModel::Motors(motors) = twin.servo_model() else {
             return prediction;
         };
         let movement = prediction.movement;
-        let travel = twin.cycle(gait).travel();
+        let travel = twin.simulate_cycle(gait).travel();
         let effort = Effort::of(gait, twin.ground(), &motors);
         let line_share =
             |step: usize| effort.line_share((step + 1) as f64 / PACE_COUNT as f64, 1.0);

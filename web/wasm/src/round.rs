@@ -32,7 +32,7 @@ impl RoundPath {
     #[must_use]
     pub fn of(twin: &Twin, name: &str) -> Option<Self> {
         let robot: &Robot = twin.robot();
-        let mut simulated_twin = Twin::new(robot, twin.servos());
+        let mut simulated_twin = Twin::new(robot, twin.servo_model());
         simulated_twin.set_ground(*twin.ground());
         let neutral: [f64; 4] = robot.neutral_pose().into();
         let mut sweeps_by_frame = lizard_robot::Round::simulate_sweeps(robot, robot.routine(name)?);

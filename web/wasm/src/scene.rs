@@ -99,7 +99,7 @@ impl Scene {
             .lizard()
             .solve(&pose)
             .map_err(|fault| fault.to_string())?;
-        let shape = Shape::at_solution(robot, &solution, twin.legs());
+        let shape = Shape::at_solution(robot, &solution, twin.leg_sweeps());
         let sprung = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
         let margin_of = |(check, value): (Check, f64)| Margin {
             name: check.name(),
@@ -108,7 +108,7 @@ impl Scene {
         Ok(Self {
             angles,
             shafts: shape.shafts.map(Spot::from),
-            tips: shape.tips.map(Spot::from),
+            tips: shape.crank_tips.map(Spot::from),
             points: shape.ends.map(Spot::from),
             sliders: Side::ALL
                 .map(|side| slider_scene(robot, &shape, &solution, side))
@@ -149,10 +149,10 @@ fn slider_scene(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -
         Side::Left => links.l12,
         Side::Right => links.l17,
     };
-    let [_, rear_tip] = servos.map(|servo| shape.arms[servo]);
+    let [_, rear_tip] = servos.map(|servo| shape.arm_tips[servo]);
     SliderScene {
         shafts: servos.map(|servo| shape.shafts[servo].into()),
-        tips: servos.map(|servo| shape.arms[servo].into()),
+        tips: servos.map(|servo| shape.arm_tips[servo].into()),
         tube: (rear_tip + pose.span * (rear_half / pose.d)).into(),
         travel: pose.s,
     }

@@ -150,7 +150,7 @@ impl EditedGait {
 /// Tries a gait, given as its table in the format of robot.toml.
 fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     let robot = twin.robot().with_gait(&table).map_err(Refused::of_gait)?;
-    let mut trial_twin = Twin::new(&robot, twin.servos());
+    let mut trial_twin = Twin::new(&robot, twin.servo_model());
     trial_twin.set_ground(*twin.ground());
     let gait = &robot.gaits()[1];
     let (audit, limits) = (gait.audit(), robot.limits());

@@ -9,7 +9,7 @@ use lizard_robot::{
 use serde::Serialize;
 
 use crate::shared::json;
-use crate::shared::pose_args::ANGLES;
+use crate::shared::pose_args::ANGLE_NAMES;
 use crate::shared::progress::Spinner;
 use crate::shared::suggestion::did_you_mean;
 use crate::{Failure, RobotFile};
@@ -98,7 +98,7 @@ fn trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
             did_you_mean(name, names)
         )));
     };
-    let mut text = format!("seconds,{}\n", ANGLES.join(","));
+    let mut text = format!("seconds,{}\n", ANGLE_NAMES.join(","));
     for (seconds, phase) in gait.frames() {
         let [a1, a2, a3, a4] = gait.table_angles(phase);
         text += &format!("{seconds:.2},{a1:.3},{a2:.3},{a3:.3},{a4:.3}\n");

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::grouped;
+use crate::shared::number::format_grouped;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{Spread, Spreads};
+use crate::shared::spread::{SpreadArgs, Spreads};
 
 /// Compare the firmware's guard with floating point at every possible pose.
 ///
@@ -39,13 +39,13 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    spread: Spread,
+    spread: SpreadArgs,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "prove";
 
-    fn spread(&mut self) -> &mut Spread {
+    fn spread(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }
@@ -61,7 +61,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         one_in: args.one_in,
         offset: args.offset,
     };
-    let rows = Proof::rows(guard) * args.spread.own(PIECES) as u64 / PIECES as u64;
+    let rows = Proof::rows(guard) * args.spread.own_piece_count(PIECES) as u64 / PIECES as u64;
     let bar = progress_bar(
         rows as usize,
         "{bar:40} {percent} % of all rows, {eta} left",
@@ -119,7 +119,7 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
             "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
             finding.part,
             finding.servos.join(" "),
-            grouped(pairs as f64, 0),
+            format_grouped(pairs as f64, 0),
             format_value(type2.or(leg), 5),
             format_value(type1, 5),
             format_value(travel, 4),
@@ -152,7 +152,7 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
         writeln!(
             out,
             "the guard accepts all {} pairs in the robot's cells, where the firmware does not ask it",
-            grouped(proof.certified() as f64, 0)
+            format_grouped(proof.certified() as f64, 0)
         )?;
     }
     Ok(())

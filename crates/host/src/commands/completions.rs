@@ -49,7 +49,7 @@ pub fn print_completions(args: CompletionsArgs, mut command: Command) -> Result<
 /// itself can only suggest any file.
 fn narrow_robot_suggestions(script: &str) -> String {
     const BASH_FILE_LINE: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
-    let names = robot_file::names().join(" ");
+    let names = robot_file::built_in_names().join(" ");
     let bash_robot_line = format!(
         "COMPREPLY=($(compgen -W '{names}' -- \"${{cur}}\") $(compgen -f -X '!*.toml' -- \
          \"${{cur}}\") $(compgen -d -S / -- \"${{cur}}\"))"

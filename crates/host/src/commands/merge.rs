@@ -96,7 +96,7 @@ impl MergedParts {
                 "there are no parts; `lizard merge --help` says how to make them".to_owned(),
             );
         };
-        let (part_count, pieces) = (first.part.of, first.pieces);
+        let (part_count, pieces) = (first.part.part_count, first.pieces);
         let mut merged = Self {
             command: first.command.clone(),
             options: first.options.clone(),
@@ -119,7 +119,9 @@ impl MergedParts {
                     part.command, merged.command
                 ));
             }
-            if part.options != merged.options || part.part.of != part_count || part.pieces != pieces
+            if part.options != merged.options
+                || part.part.part_count != part_count
+                || part.pieces != pieces
             {
                 return refuse(format!(
                     "part {name} has different options from another part"

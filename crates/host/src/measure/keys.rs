@@ -88,9 +88,11 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     })
     .map_err(failure_of)?;
     drop(spinner);
-    let has_changes = identified.moved().next().is_some();
+    let has_changes = identified.moved_keys().next().is_some();
     if has_changes {
-        let new_text = identified.text(&old_text).map_err(failure_of)?;
+        let new_text = identified
+            .updated_robot_toml(&old_text)
+            .map_err(failure_of)?;
         files::write(&args.output, new_text.as_bytes())?;
     }
     let written_path = has_changes.then_some(args.output.as_path());

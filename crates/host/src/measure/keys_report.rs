@@ -73,7 +73,7 @@ impl KeysReport {
         let [card, error] = &identified.card;
         let value_and_error = |value_of: fn(&Card) -> f64| [value_of(card), value_of(error)];
         let Goodness {
-            chi_square: [chi_square_before, chi_square, chi_square_all_free],
+            chi_squares: [chi_square_before, chi_square, chi_square_all_free],
             ..
         } = identified.goodness;
         let named_pair =
@@ -87,13 +87,13 @@ impl KeysReport {
                 ahead: value_and_error(|card| card.ahead),
                 left: value_and_error(|card| card.left),
             },
-            alike: identified.correlated.iter().map(named_pair).collect(),
+            alike: identified.correlated_pairs.iter().map(named_pair).collect(),
             fit: FitLine {
-                figures: identified.goodness.figures,
+                figures: identified.goodness.figure_count,
                 chi_square_before,
                 chi_square,
                 chi_square_all_free,
-                freedom: identified.goodness.freedom,
+                freedom: identified.goodness.degrees_of_freedom,
                 explains: identified.goodness.is_explained,
                 errors_widened: identified.goodness.error_factor,
             },
@@ -108,8 +108,8 @@ impl KeyLine {
         Self {
             key: result.key.full_name(),
             unit: result.key.unit,
-            before: result.before,
-            after: result.after,
+            before: result.file_value,
+            after: result.new_value,
             error: result.error,
             verdict: match result.verdict {
                 Verdict::Moved => "moved",
@@ -124,15 +124,15 @@ impl KeyLine {
 impl GaitLine {
     fn new(row: &Row) -> Self {
         Self {
-            gait: row.way.gait.clone(),
-            speed: 100.0 * row.way.pace,
-            measured: row.way.mean,
+            gait: row.measured.gait.clone(),
+            speed: 100.0 * row.measured.pace,
+            measured: row.measured.mean,
             error: row
-                .way
+                .measured
                 .error
                 .map(|error| Some(error).filter(|error| error.is_finite())),
-            before: row.before,
-            after: row.after,
+            before: row.predicted_before,
+            after: row.predicted_after,
         }
     }
 }
@@ -153,7 +153,7 @@ pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) 
          {:+.2} +- {:.2} deg.",
         card.ahead, error.ahead, card.left, error.left, card.turn, error.turn
     );
-    for (first, second, correlation) in &identified.correlated {
+    for (first, second, correlation) in &identified.correlated_pairs {
         let _ = writeln!(
             text,
             "{} and {} look alike in these gaits: their errors are correlated by {correlation:+.2}.",
@@ -186,7 +186,7 @@ pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) 
 }
 
 fn key_line(result: &KeyResult) -> String {
-    let digits = result.digits();
+    let digits = result.decimal_count();
     let key = result.key;
     let name = match key.unit {
         "" => key.full_name(),
@@ -202,9 +202,9 @@ fn key_line(result: &KeyResult) -> String {
     };
     format!(
         "{name:<35}{:>10}{:>10}{:>9.digits$}  {verdict}\n",
-        format!("{:?}", result.before),
+        format!("{:?}", result.file_value),
         if result.verdict == Verdict::Moved {
-            format!("{:.digits$}", result.after)
+            format!("{:.digits$}", result.new_value)
         } else {
             "-".to_owned()
         },
@@ -215,19 +215,19 @@ fn key_line(result: &KeyResult) -> String {
 /// A paragraph about how well the model explains the measurements.
 fn goodness_text(identified: &Identified) -> String {
     let Goodness {
-        figures,
-        chi_square: [chi_before, chi_after, chi_free],
-        freedom,
+        figure_count: figures,
+        chi_squares: [chi_before, chi_after, chi_free],
+        degrees_of_freedom: freedom,
         chi_square_limit: limit,
         is_explained,
         error_factor,
-        worst: (row_index, part_index, errors),
+        largest_difference: (row_index, part_index, errors),
     } = identified.goodness;
     let mut text = format!(
         "{figures} figures: chi-square {chi_before:.1} by robot.toml, {chi_after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
     );
     let (name, _) = PARTS[part_index];
-    let gait = &identified.rows[row_index].way.gait;
+    let gait = &identified.rows[row_index].measured.gait;
     let comparison = if errors > 0.0 { "more" } else { "less" };
     let worst_text = format!(
         "`{gait}`, {name}: {:.1} errors {comparison} than the model",
@@ -264,7 +264,7 @@ fn goodness_text(identified: &Identified) -> String {
 }
 
 fn row_lines(row: &Row) -> String {
-    let movement = &row.way;
+    let movement = &row.measured;
     let gait = match movement.pace {
         1.0 => movement.gait.clone(),
         pace => format!("{} at {:.0} %", movement.gait, 100.0 * pace),
@@ -281,8 +281,8 @@ fn row_lines(row: &Row) -> String {
             "{name:<17}{:<11}{:>+9.2}{error:>7}{:>+9.2}{:>+9.2}",
             format!("{part_name}, {unit}"),
             movement.mean[i],
-            row.before[i],
-            row.after[i]
+            row.predicted_before[i],
+            row.predicted_after[i]
         );
     }
     lines

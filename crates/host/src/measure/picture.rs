@@ -5,9 +5,10 @@ use svg::node::element::Group;
 
 use crate::shared::ink::Anchor;
 use crate::shared::ink::{
-    GREY, SERVO, circle, edged, line, page, rectangle, text, text_middle, text_start, title,
+    GREY, SERVO_COLOURS, add_title, circle, line, outlined, rectangle, svg_page, text, text_middle,
+    text_start,
 };
-use crate::shared::plot::{Axis, Plot, draw_entry};
+use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 
 const PAGE_WIDTH: f64 = 1000.0;
 /// Height of the title with the legend below it, px.
@@ -25,7 +26,7 @@ const BARS_WIDTH: f64 = 330.0;
 /// Height of each panel, px.
 const PANEL_HEIGHT: f64 = 220.0;
 /// Colour of measured values.
-const MEASURED_COLOUR: &str = SERVO[0];
+const MEASURED_COLOUR: &str = SERVO_COLOURS[0];
 /// Colour of predicted values.
 const PREDICTED_COLOUR: &str = GREY;
 /// Half the length of an error bar, in standard errors.
@@ -33,14 +34,14 @@ const ERROR_BAR_STANDARD_ERRORS: f64 = 2.0;
 
 /// Draws a report as SVG.
 pub(super) fn draw(report: &Report) -> String {
-    let mut group = title(
+    let mut group = add_title(
         Group::new(),
         PATH_X,
         "The robot measured",
         "mean of a cycle in a film, with twice its standard error, beside the prediction",
     );
-    group = draw_entry(group, (PATH_X, 92.0), MEASURED_COLOUR, "none", "measured");
-    group = draw_entry(
+    group = draw_legend_entry(group, (PATH_X, 92.0), MEASURED_COLOUR, "none", "measured");
+    group = draw_legend_entry(
         group,
         (PATH_X + 150.0, 92.0),
         PREDICTED_COLOUR,
@@ -50,7 +51,7 @@ pub(super) fn draw(report: &Report) -> String {
     for (row, gait) in report.gaits.iter().enumerate() {
         group = draw_gait(group, gait, TITLE_HEIGHT + ROW_HEIGHT * row as f64);
     }
-    page(
+    svg_page(
         (
             PAGE_WIDTH,
             TITLE_HEIGHT + ROW_HEIGHT * report.gaits.len() as f64,
@@ -103,8 +104,8 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let plot = Plot {
         corner: (PATH_X, top),
         size: (PATH_WIDTH, PANEL_HEIGHT),
-        x: axis_range(min_x, max_x, PATH_WIDTH),
-        y: axis_range(min_y, max_y, PANEL_HEIGHT),
+        x_range: axis_range(min_x, max_x, PATH_WIDTH),
+        y_range: axis_range(min_y, max_y, PANEL_HEIGHT),
     };
     let tick_step = tick_step(scale * PATH_WIDTH);
     let (ahead, left) = (
@@ -136,7 +137,7 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     group = group.add(plot.curve(&points, MEASURED_COLOUR, 2.0));
     let (start, last_point) = (plot.page_point(0.0, 0.0), points[points.len() - 1]);
     group
-        .add(edged(circle(start, 5.0, "white"), MEASURED_COLOUR, 2.0))
+        .add(outlined(circle(start, 5.0, "white"), MEASURED_COLOUR, 2.0))
         .add(circle(
             plot.page_point(last_point.0, last_point.1),
             5.0,
@@ -161,8 +162,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let plot = Plot {
         corner: (BARS_X, top),
         size: (BARS_WIDTH, PANEL_HEIGHT),
-        x: (0.5, 0.5 + parts.len() as f64),
-        y: (low - margin, high + margin),
+        x_range: (0.5, 0.5 + parts.len() as f64),
+        y_range: (low - margin, high + margin),
     };
     // The tick step is longer than the axis, so no ticks are drawn; the names of the bars are below the axis.
     let name_axis = Axis::new(10.0, "");
@@ -198,7 +199,7 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             ));
         }
         let point_below = |lines: f64| {
-            let (x, y) = plot.page_point(slot_x + 0.5, plot.y.0);
+            let (x, y) = plot.page_point(slot_x + 0.5, plot.y_range.0);
             (x, y + 20.0 + 18.0 * lines)
         };
         group = group
@@ -212,8 +213,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             ));
     }
     group = group.add(line(
-        plot.page_point(plot.x.0, 0.0),
-        plot.page_point(plot.x.1, 0.0),
+        plot.page_point(plot.x_range.0, 0.0),
+        plot.page_point(plot.x_range.1, 0.0),
         "black",
         1.0,
     ));

@@ -1,11 +1,11 @@
-//! `lizard design`: the paper's dimensional synthesis (performance-chart-based
-//! design methodology), and a search beyond it.
+//! `lizard design`: the paper's dimensional synthesis (performance-chart-based design methodology), and a search for
+//! better designs.
 
 use std::io::{self, BufWriter, Write};
 
 use lizard_paper::design::{
-    CLAIM, Conditioning, Demands, Design, Performance, Point, Proportions, SUM, Search, chart,
-    design, merge_ranked, triangle,
+    CLAIMED_LCI, ChartPoint, Conditioning, Demands, Design, PROPORTION_SUM, Performance,
+    Proportions, Search, compute_chart, find_design, merge_ranked, triangle_points,
 };
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -14,12 +14,12 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::pose_args::Quantity;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{Spread, Spreads};
+use crate::shared::spread::{SpreadArgs, Spreads};
 
 /// Number of rings at which the inscribed circle of a single design is sampled.
-const FINE_RINGS: usize = 128;
+const FINE_RING_COUNT: usize = 128;
 /// Number of rings at which the inscribed circles are sampled if there are many designs.
-pub const COARSE_RINGS: usize = 32;
+pub const COARSE_RING_COUNT: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
 ///
@@ -41,13 +41,13 @@ pub struct Args {
     #[arg(long, value_name = "MM", value_parser = parse_base)]
     l0: Option<f64>,
     /// Crank; give two or three of r1, r2, r3 [default: 0.3]
-    #[arg(long, value_parser = Quantity::SHARE.parser())]
+    #[arg(long, value_parser = Quantity::PROPORTION.parser())]
     r1: Option<f64>,
     /// Coupler [default: 0.5]
-    #[arg(long, value_parser = Quantity::SHARE.parser())]
+    #[arg(long, value_parser = Quantity::PROPORTION.parser())]
     r2: Option<f64>,
     /// Half the base [default: 0.1]
-    #[arg(long, value_parser = Quantity::SHARE.parser())]
+    #[arg(long, value_parser = Quantity::PROPORTION.parser())]
     r3: Option<f64>,
     /// Print the performance charts over the complete triangle, as CSV
     #[arg(long, conflicts_with = "search")]
@@ -72,13 +72,13 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    spread: Spread,
+    spread: SpreadArgs,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "design";
 
-    fn spread(&mut self) -> &mut Spread {
+    fn spread(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }
@@ -137,15 +137,15 @@ impl Args {
         match (self.r1, self.r2, self.r3) {
             (None, None, None) => Ok(Proportions::PAPER),
             (Some(r1), Some(r2), Some(r3)) => Proportions::new(r1, r2, r3),
-            (Some(r1), Some(r2), None) => Proportions::new(r1, r2, SUM - r1 - r2),
-            (Some(r1), None, Some(r3)) => Proportions::new(r1, SUM - r1 - r3, r3),
-            (None, Some(r2), Some(r3)) => Proportions::new(SUM - r2 - r3, r2, r3),
+            (Some(r1), Some(r2), None) => Proportions::new(r1, r2, PROPORTION_SUM - r1 - r2),
+            (Some(r1), None, Some(r3)) => Proportions::new(r1, PROPORTION_SUM - r1 - r3, r3),
+            (None, Some(r2), Some(r3)) => Proportions::new(PROPORTION_SUM - r2 - r3, r2, r3),
             _ => Err("give two or three of --r1, --r2, --r3".to_string()),
         }
     }
 }
 
-/// One design, lengths in mm.
+/// The report on one design, lengths in mm.
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]
@@ -169,7 +169,7 @@ impl Report {
             l0: bars.base,
             l1: bars.left_crank_length,
             l2: bars.left_coupler_length,
-            performance: Performance::of(&bars, FINE_RINGS),
+            performance: Performance::of(&bars, FINE_RING_COUNT),
         }
     }
 
@@ -197,7 +197,7 @@ workspace      {:.1} mm^2, upper half {:.1} mm^2; rings of {:.2} to {:.2} mm abo
             Some(lci) => {
                 text += &format!(
                     "MIC            radius {:.3} mm ({:.3} D), centre (0, {:.3}) mm
-LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIM} on {:.1} % of the area
+LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIMED_LCI} on {:.1} % of the area
 ",
                     performance.r_mic,
                     performance.r_mic / self.d,
@@ -236,31 +236,39 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
     }
 }
 
-/// A line on where the paper's claim "LCI > 0.7" holds.
+/// The line of text that says where the paper's claim "LCI > 0.7" holds.
 fn verdict(lci: &Conditioning, r_mic: f64) -> String {
-    let mean_verdict = if lci.mean > CLAIM { "holds" } else { "fails" };
-    let bound_verdict = if lci.least > CLAIM { "holds" } else { "fails" };
+    let mean_verdict = if lci.mean > CLAIMED_LCI {
+        "holds"
+    } else {
+        "fails"
+    };
+    let bound_verdict = if lci.least > CLAIMED_LCI {
+        "holds"
+    } else {
+        "fails"
+    };
     format!(
-        "\"LCI > {CLAIM}\"    {mean_verdict} as a mean, {bound_verdict} as a bound; as a bound it holds within {:.2} mm of the centre ({:.0} % of the radius)\n",
+        "\"LCI > {CLAIMED_LCI}\"    {mean_verdict} as a mean, {bound_verdict} as a bound; as a bound it holds within {:.2} mm of the centre ({:.0} % of the radius)\n",
         lci.radius_above,
         100.0 * lci.radius_above / r_mic,
     )
 }
 
 /// Computes the performance charts on a grid of this step, with a progress bar.
-pub fn compute_charts(step: f64, rings: usize) -> Vec<Point> {
-    let points = triangle(step);
+pub fn compute_charts(step: f64, ring_count: usize) -> Vec<ChartPoint> {
+    let points = triangle_points(step);
     let bar = progress_bar(
         points.len(),
         "performance charts {bar:40} {pos}/{len} {eta}",
     );
-    let points = chart(points, rings, &|| bar.inc(1));
+    let points = compute_chart(points, ring_count, &|| bar.inc(1));
     bar.finish_and_clear();
     points
 }
 
 fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
-    let points = compute_charts(args.step, COARSE_RINGS);
+    let points = compute_charts(args.step, COARSE_RING_COUNT);
     if args.json {
         return Ok(json::write_line(out, &points)?);
     }
@@ -268,7 +276,7 @@ fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
         out,
         "r1,r2,r3,area,r_mic,y_mic,lci_mean,lci_least,lci_most,share_above_0.7,radius_above_0.7"
     )?;
-    for Point {
+    for ChartPoint {
         proportions,
         performance,
     } in points
@@ -307,16 +315,16 @@ fn print_ranking(
         max_angle.min(-min_angle)
     });
     let demands = Demands {
-        base: l0,
-        chassis: robot.lizard().links.l10,
-        leg: robot.lizard().leg.crank,
+        base_mm: l0,
+        chassis_length_mm: robot.lizard().links.l10,
+        leg_crank_mm: robot.lizard().leg.crank,
         limits: *robot.limits(),
-        travel: travels.fold(f64::INFINITY, f64::min),
-        shortest: args.shortest,
-        sweep: args.sweep,
+        travel_deg: travels.fold(f64::INFINITY, f64::min),
+        min_link_mm: args.shortest,
+        sweep_deg: args.sweep,
     };
     let search = Search::new(args.step, demands);
-    let point_count = search.point_count(args.spread.own(search.piece_count()));
+    let point_count = search.point_count(args.spread.own_piece_count(search.piece_count()));
     let progress = progress_bar(point_count, "designs {bar:40} {pos}/{len} {eta}");
     let search_piece = |index| search.compute_piece(index, &|| progress.inc(1));
     let pieces = args
@@ -328,7 +336,7 @@ fn print_ranking(
     };
     let designs = merge_ranked(pieces);
     let top_designs = &designs[..designs.len().min(args.top)];
-    let reference = design(given_proportions, &demands);
+    let reference = find_design(given_proportions, &demands);
     if args.json {
         return Ok(json::write_line(out, &top_designs)?);
     }
@@ -339,7 +347,7 @@ fn print_ranking(
          Ranked by mean LCI, least margin (both within that sweep) and stride (with the widest safe sweep);\n\
          * none is better in all three. Base l0 {l0} mm.\n",
         designs.len(),
-        triangle(args.step).len(),
+        triangle_points(args.step).len(),
         args.sweep,
         args.shortest
     )?;

@@ -1,8 +1,8 @@
-//! `lizard errata`: prints how every equation of the paper compares with the geometric solution.
+//! `lizard errata`: the comparison of every equation of the paper with the geometric solution.
 
 use std::io::{self, Write as _};
 
-use lizard_paper::errata::{Entry, SAMPLES, equation_count, markdown, text};
+use lizard_paper::errata::{Entry, SAMPLE_COUNT, equation_count, format_markdown, format_text};
 
 use crate::Failure;
 use crate::shared::json;
@@ -19,7 +19,7 @@ use crate::shared::progress::progress_bar;
   lizard errata --markdown > docs/errata.md")]
 pub struct Args {
     /// Number of random poses
-    #[arg(long, default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, default_value_t = SAMPLE_COUNT, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     samples: u32,
     /// Print the table as Markdown
     #[arg(long, conflicts_with = "json")]
@@ -39,17 +39,17 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if args.json {
         json::write_line(&mut out, &entries)?;
     } else if args.markdown {
-        out.write_all(markdown(&entries, args.samples).as_bytes())?;
+        out.write_all(format_markdown(&entries, args.samples).as_bytes())?;
     } else {
-        out.write_all(text(&entries, args.samples).as_bytes())?;
+        out.write_all(format_text(&entries, args.samples).as_bytes())?;
     }
     Ok(())
 }
 
 /// Measures every equation at this number of random poses, with a progress bar.
-fn measure(samples: u32) -> Vec<Entry> {
+fn measure(sample_count: u32) -> Vec<Entry> {
     let bar = progress_bar(equation_count(), "equations {bar:40} {pos}/{len}");
-    let entries = lizard_paper::errata::measure(samples, &|| bar.inc(1));
+    let entries = lizard_paper::errata::measure(sample_count, &|| bar.inc(1));
     bar.finish_and_clear();
     entries
 }

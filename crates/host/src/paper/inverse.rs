@@ -8,13 +8,12 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::round_decimals;
 
-/// The solutions for the head and tail points that were asked for.
+/// The solutions for the given points of head and tail.
 #[derive(Serialize)]
 struct Report {
-    head: Option<Loop>,
-    tail: Option<Loop>,
-    /// The pose with all elbows outward, null if a point is out of reach. Head or tail is at neutral if its point is
-    /// not given.
+    head: Option<FiveBarSolutions>,
+    tail: Option<FiveBarSolutions>,
+    /// The pose with all elbows outward; null if a point is out of reach. An end without a given point is at neutral.
     pose: Option<Angles>,
     safe: bool,
     why: Vec<String>,
@@ -31,7 +30,7 @@ struct Angles {
 
 /// The solutions of one five-bar.
 #[derive(Serialize)]
-struct Loop {
+struct FiveBarSolutions {
     point: [f64; 2],
     working_modes: Vec<ModeSolution>,
     why: Option<String>,
@@ -60,11 +59,11 @@ struct ModeSolution {
 ///
 /// # Errors
 /// Fails if a point is out of reach, or if the output cannot be written.
-pub fn print(robot: &Robot, ends: [Option<Vector>; 2], is_json: bool) -> Result<(), Failure> {
-    let [head, tail] = ends;
-    let head = head.map(|point| solve(robot, End::Head, point));
-    let tail = tail.map(|point| solve(robot, End::Tail, point));
-    let report = report(robot, head, tail);
+pub fn print(robot: &Robot, end_points: [Option<Vector>; 2], is_json: bool) -> Result<(), Failure> {
+    let [head, tail] = end_points;
+    let head = head.map(|point| solve_end(robot, End::Head, point));
+    let tail = tail.map(|point| solve_end(robot, End::Tail, point));
+    let report = combine(robot, head, tail);
     json::print_json_or(is_json, &report, || text(&report))?;
     let unreachable = [("head", &report.head), ("tail", &report.tail)]
         .into_iter()
@@ -76,7 +75,7 @@ pub fn print(robot: &Robot, ends: [Option<Vector>; 2], is_json: bool) -> Result<
 }
 
 /// Solves the five-bar of head or tail for a point, in all working modes.
-fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
+fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     let local_point = robot.lizard().to_end(end, point);
     let (working_modes, reason) = match robot.lizard().end(end).inverse(local_point) {
         Ok(inverse_solutions) => {
@@ -87,7 +86,7 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
         }
         Err(fault) => (Vec::new(), Some(fault.to_string())),
     };
-    Loop {
+    FiveBarSolutions {
         point: [point.x, point.y],
         working_modes,
         why: reason,
@@ -95,7 +94,12 @@ fn solve(robot: &Robot, end: End, point: Vector) -> Loop {
 }
 
 /// Checks an inverse solution: its error, its margin, and the reasons why the robot cannot take it.
-fn solve_mode(robot: &Robot, end: End, point: Vector, solution: InverseSolution) -> ModeSolution {
+fn solve_mode(
+    robot: &Robot,
+    end: End,
+    local_point: Vector,
+    solution: InverseSolution,
+) -> ModeSolution {
     let bars = robot.lizard().end(end);
     let pose = bars.forward_in(
         solution.assembly_mode,
@@ -103,7 +107,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, solution: InverseSolution)
         solution.theta_right,
     );
     let (error_mm, margin) = match &pose {
-        Ok(pose) => ((pose.end_point - point).length(), pose.margin()),
+        Ok(pose) => ((pose.end_point - local_point).length(), pose.margin()),
         Err(_) => (0.0, 0.0),
     };
     let angles = [solution.theta_left, solution.theta_right].map(|theta| end.mirror_angle(theta));
@@ -120,7 +124,7 @@ fn solve_mode(robot: &Robot, end: End, point: Vector, solution: InverseSolution)
         );
     }
     if let Ok(pose) = &pose {
-        // Behind the crank tips the type-2 margin is negative; the reason above says so.
+        // Behind the crank tips the type-2 margin is negative. The reason above already says so.
         let is_stated = |check| is_behind && Check::TYPE2.contains(&check);
         let violations = robot.limits().end_violations(end, pose);
         reasons.extend(
@@ -150,7 +154,11 @@ fn elbow_text(elbow: Elbow) -> &'static str {
 }
 
 /// Combines the solutions of head and tail, and checks the pose that they give together.
-fn report(robot: &Robot, head: Option<Loop>, tail: Option<Loop>) -> Report {
+fn combine(
+    robot: &Robot,
+    head: Option<FiveBarSolutions>,
+    tail: Option<FiveBarSolutions>,
+) -> Report {
     let mut angles = robot.servos().map(|servo| servo.neutral);
     let mut is_complete = true;
     for (five_bar, end) in [(&head, End::Head), (&tail, End::Tail)] {
@@ -209,7 +217,7 @@ fn text(report: &Report) -> String {
             page += &format!("  {reason}\n\n");
             continue;
         }
-        // The columns are in servo order, A3 before A4; the tail's left servo is A4.
+        // The columns are in servo order, so A3 comes before A4. But the tail's left servo is A4.
         let is_swapped = name == "tail";
         page += &format!(
             "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",
@@ -258,7 +266,7 @@ fn text(report: &Report) -> String {
     page
 }
 
-/// The text of an error in mm. Errors below 1e-9 come from rounding, so their values are not printed.
+/// Formats an error in mm. Errors below 1e-9 come from rounding, so their values are not printed.
 fn format_mm_error(mm: f64) -> String {
     if mm < 1e-9 {
         "< 1e-9".to_string()

@@ -76,12 +76,12 @@ enum Subject {
 /// cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let ends = [&args.head, &args.tail]
+    let end_points = [&args.head, &args.tail]
         .map(|end| end.as_ref().map(|point| Vector::new(point[0], point[1])));
-    if ends.iter().any(Option::is_some) {
-        return inverse::print(&robot, ends, args.json);
+    if end_points.iter().any(Option::is_some) {
+        return inverse::print(&robot, end_points, args.json);
     }
-    let pose = args.pose.get();
+    let pose = args.pose.to_pose();
     let lizard = robot.lizard();
     let solve_pose = || lizard.solve(&pose.unwrap_or_else(|| robot.neutral_pose()));
     match args.show {

@@ -9,8 +9,8 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use crate::paper::poses::TimedPose;
 use crate::shared::number::round_decimals;
 
-/// One object of `lizard pose --json`. Fields that need a solution are null without one; `seconds` is present only
-/// if the stream has it.
+/// One object of `lizard pose --json`. Without a solution, the fields that need it are null. `seconds` is present
+/// only if the stream has that column.
 #[derive(Default, serde::Serialize)]
 pub struct PoseLine {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -21,38 +21,40 @@ pub struct PoseLine {
     theta7: Option<f64>,
     head: Option<[f64; 2]>,
     tail: Option<[f64; 2]>,
-    left: Option<Side>,
-    right: Option<Side>,
+    left: Option<SliderState>,
+    right: Option<SliderState>,
     legs: Option<Legs>,
-    margins: Option<Sines>,
+    margins: Option<MarginMap>,
     safe: bool,
     why: Vec<String>,
 }
 
+/// The passive joints of a slider: angle in degrees, travel in mm.
 #[derive(serde::Serialize)]
-struct Side {
+struct SliderState {
     phi: f64,
     s: f64,
 }
 
 #[derive(serde::Serialize)]
 struct Legs {
-    lf: Leg,
-    rf: Leg,
-    rh: Leg,
-    lh: Leg,
+    lf: LegAngles,
+    rf: LegAngles,
+    rh: LegAngles,
+    lh: LegAngles,
 }
 
+/// The passive angles of a leg, degrees.
 #[derive(serde::Serialize)]
-struct Leg {
+struct LegAngles {
     follower: f64,
     coupler: f64,
 }
 
-/// All margins, written as a map by name.
-struct Sines(Margins);
+/// All margins, serialized as a map from a margin's name to its value.
+struct MarginMap(Margins);
 
-impl Serialize for Sines {
+impl Serialize for MarginMap {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for (check, value) in self.0.iter() {
@@ -65,8 +67,12 @@ impl Serialize for Sines {
 
 impl PoseLine {
     /// Makes the object of a pose, with or without a solution.
-    pub fn new(robot: &Robot, seconds: Option<f64>, solved: &Result<Solution, Infeasible>) -> Self {
-        let solution = match solved {
+    pub fn new(
+        robot: &Robot,
+        seconds: Option<f64>,
+        outcome: &Result<Solution, Infeasible>,
+    ) -> Self {
+        let solution = match outcome {
             Ok(solution) => solution,
             Err(infeasible) => {
                 return Self {
@@ -79,7 +85,7 @@ impl PoseLine {
         let reasons = verdict::refusal_reasons(robot, solution);
         let (head, tail) = (solution.head_point(), solution.tail_point());
         let passive = solution.passive_joints();
-        let [lf, rf, rh, lh] = solution.legs.map(|leg| Leg {
+        let [lf, rf, rh, lh] = solution.legs.map(|leg| LegAngles {
             follower: leg.follower(),
             coupler: leg.coupler(),
         });
@@ -91,24 +97,24 @@ impl PoseLine {
             theta7: Some(passive.theta7),
             head: Some([head.x, head.y]),
             tail: Some([tail.x, tail.y]),
-            left: Some(Side {
+            left: Some(SliderState {
                 phi: passive.phi_left,
                 s: solution.left.s,
             }),
-            right: Some(Side {
+            right: Some(SliderState {
                 phi: passive.phi_right,
                 s: solution.right.s,
             }),
             legs: Some(Legs { lf, rf, rh, lh }),
-            margins: Some(Sines(solution.margins)),
+            margins: Some(MarginMap(solution.margins)),
             safe: reasons.is_empty(),
             why: reasons,
         }
     }
 }
 
-/// The heading of the table, for the columns of [`row`].
-pub fn heading(has_time: bool) -> String {
+/// The heading of the table, for the columns of [`format_row`].
+pub fn table_heading(has_time: bool) -> String {
     let seconds = if has_time { " seconds |" } else { "" };
     format!(
         "{seconds} {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or why not",
@@ -129,7 +135,11 @@ pub fn heading(has_time: bool) -> String {
 }
 
 /// Formats a pose as one row of a table.
-pub fn row(robot: &Robot, timed_pose: &TimedPose, solved: &Result<Solution, Infeasible>) -> String {
+pub fn format_row(
+    robot: &Robot,
+    timed_pose: &TimedPose,
+    outcome: &Result<Solution, Infeasible>,
+) -> String {
     let angles = <[f64; 4]>::from(timed_pose.pose);
     let mut line = String::with_capacity(192);
     if let Some(seconds) = timed_pose.seconds {
@@ -138,7 +148,7 @@ pub fn row(robot: &Robot, timed_pose: &TimedPose, solved: &Result<Solution, Infe
     for angle in angles {
         let _ = write!(line, " {:8.3}", round_decimals(angle, 3));
     }
-    let solution = match solved {
+    let solution = match outcome {
         Err(infeasible) => {
             let _ = write!(line, " | {infeasible}");
             return line;
@@ -176,14 +186,14 @@ pub fn row(robot: &Robot, timed_pose: &TimedPose, solved: &Result<Solution, Infe
 }
 
 /// Formats a pose as a page of text.
-pub fn page(robot: &Robot, pose: &Pose, solved: &Result<Solution, Infeasible>) -> String {
+pub fn format_page(robot: &Robot, pose: &Pose, outcome: &Result<Solution, Infeasible>) -> String {
     let limits = robot.limits();
     let round_3 = |value: f64| round_decimals(value, 3);
     let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(round_3);
     let mut page = format!(
         "servos   A1 theta1 {a1:9.3}   A2 theta4 {a2:9.3}   A3 theta8 {a3:9.3}   A4 theta5 {a4:9.3}  deg\n"
     );
-    let solution = match solved {
+    let solution = match outcome {
         Err(infeasible) => {
             let _ = writeln!(page, "\nno solution: {infeasible}");
             return page;

@@ -6,12 +6,12 @@ use std::io::{BufRead, Read};
 use lizard_kinematics::Pose;
 
 use crate::Failure;
-use crate::shared::pose_args::{ANGLES, NumberFault, Quantity};
+use crate::shared::pose_args::{ANGLE_NAMES, NumberFault, Quantity};
 
 /// Name of a column that may accompany the angles, as in `lizard gaits --trace`.
 const SECONDS: &str = "seconds";
 
-/// The meaning of a field: one of the four angles, or a time.
+/// A column of the stream: one of the four angles, or the time.
 #[derive(Clone, Copy, PartialEq)]
 enum Column {
     Angle(usize),
@@ -21,7 +21,7 @@ enum Column {
 impl Column {
     fn name(self) -> &'static str {
         match self {
-            Self::Angle(servo) => ANGLES[servo],
+            Self::Angle(servo) => ANGLE_NAMES[servo],
             Self::Seconds => SECONDS,
         }
     }
@@ -30,20 +30,20 @@ impl Column {
         if name == SECONDS {
             return Some(Self::Seconds);
         }
-        let servo = ANGLES.iter().position(|angle| *angle == name)?;
+        let servo = ANGLE_NAMES.iter().position(|angle| *angle == name)?;
         Some(Self::Angle(servo))
     }
 }
 
 /// The columns of a stream without a header.
-const SERVO_ORDER: [Column; 4] = [
+const DEFAULT_COLUMNS: [Column; 4] = [
     Column::Angle(0),
     Column::Angle(1),
     Column::Angle(2),
     Column::Angle(3),
 ];
 
-/// Largest length of a line, bytes. Longer lines are not poses, and are not read to their end.
+/// Largest length of a line, bytes. A longer line is not a pose, and is not read to its end.
 const MAX_LINE_BYTES: u64 = 1024;
 
 /// A pose of the stream, with its time.
@@ -55,49 +55,49 @@ pub struct TimedPose {
     pub pose: Pose,
 }
 
-/// Iterator over the poses of a CSV text. Its first line may name the columns, in any order; without such a header
-/// they are A1, A2, A3, A4. Blank lines are skipped, lines end in LF or CRLF, names and numbers may stand in double
-/// quotes, a byte order mark is ignored.
+/// Iterator over the poses of a CSV text. The first line may be a header that names the columns, in any order. Without
+/// a header the columns are A1, A2, A3, A4. Lines end in LF or CRLF. Blank lines and a byte order mark are ignored.
+/// Names and numbers may be in double quotes.
 pub struct Poses<R> {
     input: R,
-    line: Vec<u8>,
-    number: usize,
-    /// The meaning of each field of a line.
+    line_bytes: Vec<u8>,
+    line_number: usize,
+    /// The column of each field of a line.
     columns: Vec<Column>,
-    /// True until the first line, read while looking for a header, has been returned as a pose.
+    /// True if the first line is a pose that was read in search of a header and has not yet been returned.
     has_pending_line: bool,
 }
 
 impl<R: BufRead> Poses<R> {
-    /// Reads the header, if there is one.
+    /// Creates the iterator and reads the header, if there is one.
     ///
     /// # Errors
     /// Fails if the input is empty, cannot be read, or its header is wrong.
     pub fn new(input: R) -> Result<Self, Failure> {
         let mut poses = Self {
             input,
-            line: Vec::new(),
-            number: 0,
-            columns: SERVO_ORDER.to_vec(),
+            line_bytes: Vec::new(),
+            line_number: 0,
+            columns: DEFAULT_COLUMNS.to_vec(),
             has_pending_line: false,
         };
-        let expected = ANGLES.join(",");
+        let expected = ANGLE_NAMES.join(",");
         if !poses.advance()? {
             return Err(Failure::Input(format!(
                 "line 1, column 1: the input is empty, expected the header {expected}"
             )));
         }
-        let text = poses.text()?;
+        let text = poses.line_text()?;
         let names: Vec<&str> = text.split(',').map(trim_quotes).collect();
         // A header contains no number; a pose does.
         if names.iter().any(|name| name.parse::<f64>().is_ok()) {
             poses.has_pending_line = true;
             return Ok(poses);
         }
-        let number = poses.number;
+        let line_number = poses.line_number;
         let header_failure = |column: usize, problem: String| {
             Failure::Input(format!(
-                "line {number}, column {column}: {problem}; the header is {expected}, in any order, \
+                "line {line_number}, column {column}: {problem}; the header is {expected}, in any order, \
                  and {SECONDS} if you like"
             ))
         };
@@ -111,7 +111,10 @@ impl<R: BufRead> Poses<R> {
             }
             columns.push(column);
         }
-        if let Some(missing_column) = SERVO_ORDER.iter().find(|angle| !columns.contains(angle)) {
+        if let Some(missing_column) = DEFAULT_COLUMNS
+            .iter()
+            .find(|angle| !columns.contains(angle))
+        {
             let missing_column = missing_column.name();
             return Err(header_failure(
                 names.len() + 1,
@@ -127,34 +130,34 @@ impl<R: BufRead> Poses<R> {
         self.columns.contains(&Column::Seconds)
     }
 
-    /// Reads the next line that is not blank; returns false at the end of the input.
+    /// Reads the next line that is not blank. Returns false at the end of the input.
     fn advance(&mut self) -> Result<bool, Failure> {
         loop {
-            self.line.clear();
+            self.line_bytes.clear();
             let byte_count = (&mut self.input)
                 .take(MAX_LINE_BYTES)
-                .read_until(b'\n', &mut self.line)?;
+                .read_until(b'\n', &mut self.line_bytes)?;
             if byte_count == 0 {
                 return Ok(false);
             }
-            self.number += 1;
-            if byte_count as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
+            self.line_number += 1;
+            if byte_count as u64 == MAX_LINE_BYTES && !self.line_bytes.ends_with(b"\n") {
                 return Err(Failure::Input(format!(
                     "line {}, column 1: longer than {MAX_LINE_BYTES} bytes",
-                    self.number
+                    self.line_number
                 )));
             }
-            if !self.line.iter().all(u8::is_ascii_whitespace) {
+            if !self.line_bytes.iter().all(u8::is_ascii_whitespace) {
                 return Ok(true);
             }
         }
     }
 
-    /// The current line, without its line ending and without a byte order mark.
-    fn text(&self) -> Result<&str, Failure> {
-        std::str::from_utf8(&self.line)
+    /// The text of the current line, without its line ending and without a byte order mark.
+    fn line_text(&self) -> Result<&str, Failure> {
+        std::str::from_utf8(&self.line_bytes)
             .map(|text| {
-                let is_first = self.number == 1;
+                let is_first = self.line_number == 1;
                 let text = text
                     .strip_prefix('\u{feff}')
                     .filter(|_| is_first)
@@ -162,20 +165,20 @@ impl<R: BufRead> Poses<R> {
                 text.trim_end_matches(['\n', '\r'])
             })
             .map_err(|error| {
-                let valid_bytes = &self.line[..error.valid_up_to()];
+                let valid_bytes = &self.line_bytes[..error.valid_up_to()];
                 let column = valid_bytes.iter().filter(|&&byte| byte == b',').count() + 1;
                 Failure::Input(format!(
                     "line {}, column {column}: not UTF-8 text",
-                    self.number
+                    self.line_number
                 ))
             })
     }
 
     /// Parses the current line as a pose.
-    fn parse(&self) -> Result<TimedPose, Failure> {
+    fn parse_line(&self) -> Result<TimedPose, Failure> {
         let mut angles = [0.0; 4];
         let mut seconds = None;
-        let mut count = 0;
+        let mut value_count = 0;
         let failure_at = |field: usize, problem: String| {
             let name = match self.columns.get(field) {
                 Some(column) => format!(" ({})", column.name()),
@@ -183,11 +186,11 @@ impl<R: BufRead> Poses<R> {
             };
             Failure::Input(format!(
                 "line {}, column {}{name}: {problem}",
-                self.number,
+                self.line_number,
                 field + 1
             ))
         };
-        for (field, text) in self.text()?.split(',').enumerate() {
+        for (field, text) in self.line_text()?.split(',').enumerate() {
             let text = trim_quotes(text);
             let Some(&column) = self.columns.get(field) else {
                 return Err(failure_at(
@@ -208,10 +211,10 @@ impl<R: BufRead> Poses<R> {
                     seconds = Some(Quantity::TIME.parse(text).map_err(number_failure)?);
                 }
             }
-            count = field + 1;
+            value_count = field + 1;
         }
-        if count < self.columns.len() {
-            return Err(failure_at(count, "no value".to_string()));
+        if value_count < self.columns.len() {
+            return Err(failure_at(value_count, "no value".to_string()));
         }
         Ok(TimedPose {
             seconds,
@@ -225,10 +228,10 @@ impl<R: BufRead> Iterator for Poses<R> {
 
     fn next(&mut self) -> Option<Self::Item> {
         if std::mem::take(&mut self.has_pending_line) {
-            return Some(self.parse());
+            return Some(self.parse_line());
         }
         match self.advance() {
-            Ok(true) => Some(self.parse()),
+            Ok(true) => Some(self.parse_line()),
             Ok(false) => None,
             Err(failure) => Some(Err(failure)),
         }

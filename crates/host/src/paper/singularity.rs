@@ -1,5 +1,4 @@
-//! `lizard pose --show singularities`: the matrices K and K*, the factors of det K*, and the turns of the servos to
-//! the nearest singular poses.
+//! `lizard pose --show singularities`: the matrices K and K*, the factors of det K*, and the nearest singular poses.
 
 use lizard_kinematics::{
     BlockDeterminants, End, FiveBar, SingularPose, Singularity, Solution, wrap,
@@ -11,7 +10,7 @@ use serde::Serialize;
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::round_decimals;
-use crate::shared::pose_args::ANGLES;
+use crate::shared::pose_args::ANGLE_NAMES;
 
 /// Names of the passive joints and slider travels, in the order of the columns of K*.
 const PASSIVE_NAMES: [&str; 8] = [
@@ -69,12 +68,12 @@ impl Matrix {
     }
 }
 
-/// The result, with the field names of `--json`.
+/// The output, with the field names of `--json`.
 #[derive(Serialize)]
 struct Report {
     /// Derivatives with respect to the servo angles, mm per radian.
     k: Matrix,
-    /// Derivatives with respect to the passive joints: mm per radian, and for s mm per mm.
+    /// Derivatives with respect to the passive joints, mm per radian; with respect to s, mm per mm.
     k_star: Matrix,
     /// det K* by elimination.
     determinant: f64,
@@ -83,7 +82,7 @@ struct Report {
     blocks: Factors,
     /// lg12 lg13 sin(theta_lg12 - theta_lg13) of each leg, in servo order.
     leg_determinants: [f64; 4],
-    nearest: Vec<Nearest>,
+    nearest: Vec<NearestSingularity>,
 }
 
 /// The determinants of the diagonal blocks of K*.
@@ -97,7 +96,7 @@ struct Factors {
 
 /// The nearest singular pose of one kind.
 #[derive(Serialize)]
-struct Nearest {
+struct NearestSingularity {
     what: String,
     /// Distance in the servos' angles, degrees.
     distance: f64,
@@ -110,11 +109,11 @@ struct Nearest {
 /// # Errors
 /// Fails for an output that cannot be written.
 pub fn print(robot: &Robot, solution: &Solution, is_json: bool) -> Result<(), Failure> {
-    let report = report(robot, solution);
+    let report = compute_report(robot, solution);
     json::print_json_or(is_json, &report, || text(&report))
 }
 
-fn report(robot: &Robot, solution: &Solution) -> Report {
+fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     let k_star = solution.passive_matrix();
     let matrix = SMatrix::<f64, 8, 8>::from_fn(|row, column| k_star[row][column]);
     let blocks @ BlockDeterminants {
@@ -146,7 +145,7 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
                         format!("{end} type 1, A{} arm straight or folded", servos[1] + 1)
                     }
                 };
-                nearest.push(Nearest {
+                nearest.push(NearestSingularity {
                     what: description,
                     distance,
                     turn,
@@ -155,19 +154,19 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
         }
     }
     for (servo, angle) in <[f64; 4]>::from(solution.pose).into_iter().enumerate() {
-        // A leg has change points at 0 and 180 degrees.
-        let turn_by = 180.0 * (angle / 180.0).round() - angle;
+        // A leg's change points are at 0 and 180 degrees.
+        let turn_deg = 180.0 * (angle / 180.0).round() - angle;
         let mut turn = [0.0; 4];
-        turn[servo] = turn_by;
-        nearest.push(Nearest {
+        turn[servo] = turn_deg;
+        nearest.push(NearestSingularity {
             what: format!("leg on A{} flat, a change point", servo + 1),
-            distance: turn_by.abs(),
+            distance: turn_deg.abs(),
             turn,
         });
     }
     nearest.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     Report {
-        k: Matrix::new(&ANGLES, solution.active_matrix()),
+        k: Matrix::new(&ANGLE_NAMES, solution.active_matrix()),
         k_star: Matrix::new(&PASSIVE_NAMES, k_star),
         determinant: matrix.determinant(),
         factored: blocks.determinant(),
@@ -177,7 +176,6 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
             left,
             right,
         },
-        // lg12 lg13 sin(theta_lg12 - theta_lg13)
         leg_determinants: solution
             .legs
             .map(|pose| -leg.coupler * leg.follower * pose.direction.y),
@@ -185,8 +183,9 @@ fn report(robot: &Robot, solution: &Solution) -> Report {
     }
 }
 
-/// The singular crank angles of one kind that are nearest to `angles`, with their distance in degrees; `None` if there
-/// are none. Scans the singularity curves over all left crank angles, then refines the step around the best one.
+/// Returns the singular pose of one kind whose crank angles are nearest to `angles`, with its distance in degrees;
+/// `None` if there is no such pose. Scans the singularity curves over all left crank angles, then refines the step
+/// around the nearest pose.
 pub fn nearest_singularity(
     bars: &FiveBar,
     kind: Singularity,
@@ -201,8 +200,8 @@ pub fn nearest_singularity(
     };
     let closer_of = |a: (f64, SingularPose), b: (f64, SingularPose)| if b.0 < a.0 { b } else { a };
     let scan = |centre: f64, half_range: f64, step: f64| {
-        let steps = (half_range / step).round() as i32;
-        (-steps..=steps)
+        let step_count = (half_range / step).round() as i32;
+        (-step_count..=step_count)
             .flat_map(|i| bars.singular_poses_with(centre + f64::from(i) * step))
             .filter(|pose| pose.kind == kind)
             .map(with_distance)
@@ -217,11 +216,11 @@ pub fn nearest_singularity(
             step /= 20.0;
         }
     }
-    let points = bars
+    let coinciding_poses = bars
         .poses_with_coinciding_tips()
         .filter(|_| kind == Singularity::Couplers);
     best.into_iter()
-        .chain(points.map(with_distance))
+        .chain(coinciding_poses.map(with_distance))
         .reduce(closer_of)
 }
 

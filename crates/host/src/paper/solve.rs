@@ -13,13 +13,16 @@ use crate::Failure;
 use crate::paper::pose_line::{self, PoseLine};
 use crate::paper::poses::{Poses, TimedPose};
 
-/// Number of poses that are solved together, which bounds the memory.
+/// Number of poses that are solved together; it limits the memory.
 const BATCH_SIZE: usize = 8192;
 
-/// Number of blocks of lines, each a sixteenth of a batch, that may wait to be written.
+/// Number of poses whose lines form a block.
+const BLOCK_SIZE: usize = BATCH_SIZE / 16;
+
+/// Number of blocks that may wait to be written.
 const MAX_WAITING_BLOCKS: usize = 32;
 
-/// Solves a pose and prints it; without a pose, solves those of standard input.
+/// Solves a pose and prints it. Without a pose, solves the poses of standard input.
 ///
 /// # Errors
 /// Fails for an invalid pose or line of the stream, or an output that cannot be written.
@@ -34,24 +37,24 @@ pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Fa
     }
 }
 
-/// The output for one pose, as a page or a JSON object.
+/// Solves one pose and returns the output, as a page of text or a JSON object.
 fn solve_one(robot: &Robot, pose: &Pose, is_json: bool) -> Result<Vec<u8>, Failure> {
-    let solved = robot.lizard().solve(pose);
+    let outcome = robot.lizard().solve(pose);
     if !is_json {
-        return Ok(pose_line::page(robot, pose, &solved).into_bytes());
+        return Ok(pose_line::format_page(robot, pose, &outcome).into_bytes());
     }
-    let mut line = serde_json::to_vec(&PoseLine::new(robot, None, &solved))?;
+    let mut line = serde_json::to_vec(&PoseLine::new(robot, None, &outcome))?;
     line.push(b'\n');
     Ok(line)
 }
 
-/// Solves batches on all cores and writes them in order; one batch is written while the next is solved. The
-/// poses before a malformed line are still solved and written.
+/// Solves the poses of standard input in batches on all cores, and writes them in order. One batch is written while
+/// the next is solved. The poses before a malformed line are still solved and written.
 fn solve_stream(robot: &Robot, is_json: bool) -> Result<(), Failure> {
     let mut poses = Poses::new(io::stdin().lock())?;
     let (sender, receiver) = mpsc::sync_channel::<Vec<u8>>(MAX_WAITING_BLOCKS);
     thread::scope(|scope| {
-        let heading = (!is_json).then(|| pose_line::heading(poses.has_time()));
+        let heading = (!is_json).then(|| pose_line::table_heading(poses.has_time()));
         let writer = scope.spawn(move || write_blocks(receiver, heading));
         let outcome = solve_all(robot, is_json, &mut poses, &sender);
         drop(sender);
@@ -96,7 +99,7 @@ fn solve_all(
         }
         let is_last = batch.len() < BATCH_SIZE;
         let blocks: Vec<_> = batch
-            .par_chunks(BATCH_SIZE / 16)
+            .par_chunks(BLOCK_SIZE)
             .map(|poses| format_lines(robot, poses, is_json))
             .collect();
         for block in blocks {
@@ -112,18 +115,18 @@ fn solve_all(
     }
 }
 
-/// Solves poses and returns their lines, CSV or JSON.
+/// Solves poses and returns their lines, as rows of the table or as JSON.
 fn format_lines(robot: &Robot, poses: &[TimedPose], is_json: bool) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::with_capacity(poses.len() * if is_json { 1024 } else { 192 });
     for timed_pose in poses {
-        let solved = robot.lizard().solve(&timed_pose.pose);
+        let outcome = robot.lizard().solve(&timed_pose.pose);
         if is_json {
             serde_json::to_writer(
                 &mut text,
-                &PoseLine::new(robot, timed_pose.seconds, &solved),
+                &PoseLine::new(robot, timed_pose.seconds, &outcome),
             )?;
         } else {
-            text.extend_from_slice(pose_line::row(robot, timed_pose, &solved).as_bytes());
+            text.extend_from_slice(pose_line::format_row(robot, timed_pose, &outcome).as_bytes());
         }
         text.push(b'\n');
     }

@@ -1,4 +1,4 @@
-//! `lizard pose --show rates`: passive rates and accelerations from those of the servos.
+//! `lizard pose --show rates`: rates and accelerations of the passive joints, from those of the servos.
 
 use lizard_kinematics::{Derivatives, Lizard, Pose, ServoMotion, Solution, wrap};
 use serde::Serialize;
@@ -8,11 +8,11 @@ use crate::shared::json;
 use crate::shared::number::round_decimals;
 use crate::shared::pose_args::Quantity;
 
-/// Longest step of the finite differences for the comparison, s.
+/// Longest time step of the finite differences, s.
 const MAX_STEP_S: f64 = 2e-4;
 
-/// Largest turn of a servo in a step of the finite differences, deg. With a larger turn the differences would not
-/// hold for the pose that is examined.
+/// Largest turn of a servo in one step of the finite differences, deg. With larger turns the differences would be
+/// inaccurate.
 const MAX_STEP_TURN_DEG: f64 = 0.04;
 
 #[derive(clap::Args)]
@@ -44,7 +44,7 @@ pub struct DriveArgs {
     alpha5: f64,
 }
 
-/// A joint or coordinate in the result.
+/// A joint or coordinate of the output.
 #[derive(Clone, Serialize)]
 struct Row {
     joint: &'static str,
@@ -155,15 +155,15 @@ fn rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
 /// Rates and accelerations in closed form, compared with finite differences of the poses around this one.
 fn rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Vec<Row> {
     let start_angles = <[f64; 4]>::from(solution.pose);
-    let largest_of = |values: &[f64; 4]| {
+    let largest_magnitude = |values: &[f64; 4]| {
         values
             .iter()
             .fold(0.0f64, |max, value| max.max(value.abs()))
     };
-    // If the servos stand still, the quotients are infinite and do not limit the step.
+    // If the servos stand still, the quotients are infinite, so they do not limit the step.
     let step_s = MAX_STEP_S
-        .min(MAX_STEP_TURN_DEG / largest_of(&drive.rate))
-        .min((MAX_STEP_TURN_DEG / largest_of(&drive.acceleration)).sqrt());
+        .min(MAX_STEP_TURN_DEG / largest_magnitude(&drive.rate))
+        .min((MAX_STEP_TURN_DEG / largest_magnitude(&drive.acceleration)).sqrt());
     let values_at = |steps: f64| {
         let t = steps * step_s;
         let angles: [f64; 4] = std::array::from_fn(|i| {
@@ -178,10 +178,10 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Vec<Row> {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
-    let motion = rates(&solution.derivatives(drive));
+    let rates_and_accelerations = rates(&solution.derivatives(drive));
     values(solution)
         .into_iter()
-        .zip(motion)
+        .zip(rates_and_accelerations)
         .enumerate()
         .map(|(i, ((joint, unit, value), (rate, acceleration)))| {
             let differences = neighbours.as_ref().map(|neighbours| {

@@ -1,4 +1,4 @@
-//! The failure that ends the program: a message for the user, and an exit code.
+//! The failure that ends the program, with a message for the user and an exit code.
 
 use std::io;
 
@@ -14,8 +14,8 @@ pub enum Failure {
     /// The command is valid, but could not be carried out.
     #[error("{0}")]
     Impossible(String),
-    /// Standard input, standard output or the terminal failed. Errors of a file or a port are
-    /// reported with its name.
+    /// Standard input, standard output or the terminal failed. An error of a file or a port is not reported by this
+    /// variant, because its message must name the file or the port.
     #[error("standard input or output: {0}")]
     Io(#[from] io::Error),
 }
@@ -29,7 +29,7 @@ impl Failure {
         }
     }
 
-    /// True if the reader of our output has closed it, as in `lizard ... | head`; that is not a fault.
+    /// True if the reader of standard output has closed the pipe, as in `lizard ... | head`, which is not an error.
     pub fn is_silent(&self) -> bool {
         matches!(self, Self::Io(error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -42,7 +42,7 @@ impl From<lizard_kinematics::Infeasible> for Failure {
 }
 
 impl From<serde_json::Error> for Failure {
-    /// Treats the error as a failed write, since our own values always serialise.
+    /// Treats the error as a failed write, because the program's own values can always be serialized.
     fn from(error: serde_json::Error) -> Self {
         Self::Io(error.into())
     }

@@ -1,12 +1,12 @@
 //! Reading and writing the files of all commands.
 //!
-//! A program that is ended while it writes leaves half a file, and half an image or half a calibration is worse
-//! than none. So the bytes are written to a file without a name, or to a temporary one if the system has no
-//! nameless files, and this file gets its final name at the end.
+//! A program that is killed while it writes leaves half a file. Half an image or half a calibration is worse than
+//! none. So the bytes are written to a file without a name, or to a temporary file if the file system has no nameless
+//! files. This file gets its final name when it is complete.
 //!
-//! An output replaces only an ordinary file. If it replaced a device such as /dev/null, this would affect every
-//! program of the machine. Nor does an output replace a robot's description or an input of the same command: both are
-//! somebody's work, and a wrong name is typed easily.
+//! An output replaces only an ordinary file, because every program of the machine needs devices such as /dev/null. An
+//! output does not replace a robot's description or an input of the same command either: both are somebody's work, and
+//! a wrong name is easily typed.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -28,7 +28,7 @@ pub fn note_input(path: &Path) -> &Path {
 /// Reads the text of an input.
 ///
 /// # Errors
-/// Fails if the file cannot be read, is not text, or is longer than 256 MiB, as an endless device is.
+/// Fails if the file cannot be read, is not text, or is longer than 256 MiB; an endless device is longer, for example.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
@@ -78,9 +78,8 @@ fn is_robot_file(path: &Path) -> bool {
     resolved_path.ends_with("robot.toml") || fs::read(resolved_path).is_ok_and(has_links_table)
 }
 
-/// Writes a file completely or not at all, and creates the folders it needs. An existing file is replaced, also
-/// through a symbolic link, and keeps its permissions. A stream, such as /dev/stdout or a named pipe, gets the
-/// bytes.
+/// Writes a file completely or not at all, and creates missing folders. Replaces an existing file, also through a
+/// symbolic link, and keeps its permissions. Writes the bytes directly to a stream, such as /dev/stdout or a pipe.
 ///
 /// # Errors
 /// Fails if the folder cannot be created or written to; if something at this path is neither an ordinary file nor a
@@ -146,7 +145,7 @@ fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     }
 }
 
-/// Writes the bytes to a nameless or a temporary file in the same folder, and then gives it the name `path`.
+/// Writes the bytes to a nameless or temporary file in the same folder, and then gives that file its final path.
 fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let (path, permissions) = resolve(path)?;
     let folder = match path.parent() {
@@ -180,15 +179,15 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
         // The permissions of any new file; the user's umask restricts them.
         builder.permissions(Permissions::from_mode(0o666));
     }
-    // In the same folder, because a file can be moved atomically only within a file system.
+    // The temporary file is in the same folder, because a move is atomic only within a file system.
     let mut file = builder.tempfile_in(folder)?;
     write_content(file.as_file_mut())?;
     file.persist(path)?;
     Ok(())
 }
 
-/// Creates a file in this folder that has no name yet, and vanishes if the program is killed; `None` if the file
-/// system has no such files.
+/// Creates a file without a name in this folder, which vanishes if the program is killed; `None` if the file system
+/// does not support such files.
 #[cfg(target_os = "linux")]
 fn create_nameless(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
@@ -198,7 +197,7 @@ fn create_nameless(folder: &Path) -> Option<File> {
     Path::new("/proc/self/fd").is_dir().then(|| file.into())
 }
 
-/// Gives a name to a file of [`create_nameless`].
+/// Gives a name to a file that [`create_nameless`] created.
 #[cfg(target_os = "linux")]
 fn link_to_name(file: &File, name: &Path) -> io::Result<()> {
     use rustix::fs::{AtFlags, CWD, linkat};
@@ -211,7 +210,7 @@ fn link_to_name(file: &File, name: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn refusal_of(path: &Path) -> String {
+    fn error_text(path: &Path) -> String {
         write(path, b"x")
             .expect_err("it is not written")
             .to_string()
@@ -248,7 +247,7 @@ mod tests {
             ),
         ] {
             let old_bytes = fs::read(path).expect("it is there");
-            let message = refusal_of(path);
+            let message = error_text(path);
             assert!(message.contains(reason), "{message}");
             assert_eq!(fs::read(path).expect("it is there"), old_bytes);
         }
@@ -258,7 +257,7 @@ mod tests {
     #[test]
     fn a_file_that_cannot_be_written_is_named() {
         assert_eq!(
-            refusal_of(Path::new("/dev/null/folder/a.toml")),
+            error_text(Path::new("/dev/null/folder/a.toml")),
             "cannot write /dev/null/folder/a.toml: Not a directory (os error 20)"
         );
     }
@@ -269,7 +268,7 @@ mod tests {
         let inner_folder = folder.path().join("inner");
         fs::create_dir(&inner_folder).expect("a folder in it");
         assert!(
-            refusal_of(&inner_folder).ends_with("it already exists and is not an ordinary file")
+            error_text(&inner_folder).ends_with("it already exists and is not an ordinary file")
         );
         assert!(inner_folder.is_dir());
     }
@@ -290,7 +289,7 @@ mod tests {
         let mode = file.metadata().expect("it is there").permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
         symlink("nothing", &broken_link).expect("a link");
-        assert!(refusal_of(&broken_link).ends_with("astray: it is a link that leads nowhere"));
+        assert!(error_text(&broken_link).ends_with("astray: it is a link that leads nowhere"));
         assert!(broken_link.is_symlink());
     }
 
@@ -308,7 +307,7 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn in_a_read_only_folder_the_error_names_only_the_file() {
-        let message = refusal_of(Path::new("/proc/self/a.toml"));
+        let message = error_text(Path::new("/proc/self/a.toml"));
         assert!(
             message.starts_with("cannot write /proc/self/a.toml: "),
             "{message}"

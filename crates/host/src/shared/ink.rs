@@ -4,30 +4,30 @@ use svg::node::Value;
 use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
 use svg::{Document, Node};
 
-/// Colours of servos A1 to A4 and their legs: three of Okabe and Ito's colours and a purple of Tol's, which
-/// colour-blind people can tell apart, too.
-pub const SERVO: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
+/// Colours of servos A1 to A4 and their legs: three of Okabe and Ito's colours and a purple of Tol's. Colour-blind
+/// people can distinguish them.
+pub const SERVO_COLOURS: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
 /// Positions of servos A1 to A4 on the robot.
-pub const PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
+pub const SERVO_PLACES: [&str; 4] = ["front left", "front right", "back right", "back left"];
 /// The colour of text and axes.
 pub const DARK: &str = "#222222";
 /// The colour of secondary text.
 pub const GREY: &str = "#666666";
 /// The colour of grid lines.
-pub const GRID: &str = "#dddddd";
-/// The colour of a servo's signal wire. In grey print, the wires of signal, +5 V and ground are light, medium, dark.
+pub const GRID_COLOUR: &str = "#dddddd";
+/// The colour of a signal wire. In grey print, signal wires are light, +5 V wires medium, and ground wires dark.
 pub const ORANGE: &str = "#e8930c";
 /// The colour of the +5 V wire; see [`ORANGE`].
 pub const RED: &str = "#e5383b";
 /// The colour of the ground wire; see [`ORANGE`].
 pub const BROWN: &str = "#3d2210";
 /// The colour of the backgrounds of panels.
-pub const PANEL: &str = "#f7f7f7";
+pub const PANEL_COLOUR: &str = "#f7f7f7";
 
 /// The fonts, in order of preference.
 const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
-/// The part of a text that lies at the point given for it.
+/// The part of a text that lies at the text's point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
     /// The text begins at the point.
@@ -46,8 +46,8 @@ pub fn text(content: &str, point: (f64, f64), size: f64, colour: &str, anchor: A
         Anchor::End => "end",
     };
     Text::new(content)
-        .set("x", fixed(point.0))
-        .set("y", fixed(point.1))
+        .set("x", round_hundredths(point.0))
+        .set("y", round_hundredths(point.1))
         .set("font-size", size)
         .set("font-family", FONTS)
         .set("fill", colour)
@@ -69,15 +69,15 @@ pub fn text_end(content: &str, point: (f64, f64), size: f64) -> Text {
     text(content, point, size, DARK, Anchor::End)
 }
 
-/// Adds a picture's title, and a note below it.
-pub fn title(group: Group, left: f64, heading: &str, note: &str) -> Group {
+/// Adds the title of a picture, with a note below the title.
+pub fn add_title(group: Group, left: f64, heading: &str, note: &str) -> Group {
     group
         .add(text_start(heading, (left, 40.0), 24.0).set("font-weight", "bold"))
         .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
 }
 
 /// The SVG text of a picture on a white page.
-pub fn page(size: (f64, f64), group: Group) -> String {
+pub fn svg_page(size: (f64, f64), group: Group) -> String {
     Document::new()
         .set("viewBox", (0.0, 0.0, size.0, size.1))
         .set("width", size.0)
@@ -108,10 +108,10 @@ pub fn cross(centre: (f64, f64), arm_length: f64, colour: &str, width: f64) -> G
 /// A straight line.
 pub fn line(from: (f64, f64), to: (f64, f64), colour: &str, width: f64) -> Line {
     Line::new()
-        .set("x1", fixed(from.0))
-        .set("y1", fixed(from.1))
-        .set("x2", fixed(to.0))
-        .set("y2", fixed(to.1))
+        .set("x1", round_hundredths(from.0))
+        .set("y1", round_hundredths(from.1))
+        .set("x2", round_hundredths(to.0))
+        .set("y2", round_hundredths(to.1))
         .set("stroke", colour)
         .set("stroke-width", width)
         .set("stroke-linecap", "round")
@@ -120,24 +120,24 @@ pub fn line(from: (f64, f64), to: (f64, f64), colour: &str, width: f64) -> Line 
 /// A rectangle by its upper left corner and its size.
 pub fn rectangle(corner: (f64, f64), size: (f64, f64), fill: &str) -> Rectangle {
     Rectangle::new()
-        .set("x", fixed(corner.0))
-        .set("y", fixed(corner.1))
-        .set("width", fixed(size.0))
-        .set("height", fixed(size.1))
+        .set("x", round_hundredths(corner.0))
+        .set("y", round_hundredths(corner.1))
+        .set("width", round_hundredths(size.0))
+        .set("height", round_hundredths(size.1))
         .set("fill", fill)
 }
 
 /// A circle by its centre and radius.
 pub fn circle(centre: (f64, f64), radius: f64, fill: &str) -> Circle {
     Circle::new()
-        .set("cx", fixed(centre.0))
-        .set("cy", fixed(centre.1))
+        .set("cx", round_hundredths(centre.0))
+        .set("cy", round_hundredths(centre.1))
         .set("r", radius)
         .set("fill", fill)
 }
 
 /// Gives a shape an outline of this colour and width.
-pub fn edged<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T {
+pub fn outlined<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T {
     shape.assign("stroke", colour);
     shape.assign("stroke-width", width);
     shape
@@ -147,7 +147,7 @@ pub fn edged<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T 
 pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
     let coordinates: Vec<String> = points
         .iter()
-        .map(|(x, y)| format!("{},{}", fixed(*x), fixed(*y)))
+        .map(|(x, y)| format!("{},{}", round_hundredths(*x), round_hundredths(*y)))
         .collect();
     Polyline::new()
         .set("points", coordinates.join(" "))
@@ -158,8 +158,8 @@ pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
         .set("stroke-linecap", "round")
 }
 
-/// Rounds to a hundredth of a pixel, which keeps files small and equal on all machines.
-pub fn fixed(value: f64) -> f64 {
+/// Rounds to hundredths of a pixel, which keeps files small and equal on all machines.
+pub fn round_hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 

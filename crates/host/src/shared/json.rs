@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-/// Prints the value as a line of JSON if `is_json` is true, else as the text that `text_of` returns.
+/// Prints the value as a line of JSON if `is_json` is true, otherwise as the text that `text_of` returns.
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
@@ -24,7 +24,7 @@ pub fn print_json_or(
 /// Writes one value as one line of JSON.
 ///
 /// # Errors
-/// Fails if writing fails.
+/// Fails if the output cannot be written.
 pub fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer(&mut *out, value)?;
     writeln!(out)

@@ -1,5 +1,5 @@
-//! Helpers that several commands use: files, errors, the robot file, JSON, the colours and
-//! shapes of pictures, and computations spread over machines.
+//! Helpers of several commands: files, errors, the robot file, JSON, the colours and shapes of pictures, and
+//! computations spread over machines.
 #![cfg_attr(
     not(all(
         feature = "simulator",

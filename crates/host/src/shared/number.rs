@@ -1,14 +1,14 @@
 //! Rounding and formatting of numbers for people.
 
-/// A value rounded to some decimals for printing. Zero has no sign: no "-0.000".
+/// Rounds a value to some decimals for printing. Zero has no sign: never "-0.000".
 pub fn round_decimals(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
-    // Adding a positive zero turns a negative one positive.
+    // Adding 0.0 turns -0.0 into 0.0.
     (value * scale).round() / scale + 0.0
 }
 
-/// A number with blanks between groups of three digits.
-pub fn grouped(value: f64, decimals: usize) -> String {
+/// Formats a number with blanks between groups of three digits.
+pub fn format_grouped(value: f64, decimals: usize) -> String {
     let ungrouped = format!("{value:.decimals$}");
     let (integer, fraction) = ungrouped.split_at(ungrouped.find('.').unwrap_or(ungrouped.len()));
     let mut text = String::new();
@@ -26,14 +26,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn thousands_are_set_apart() {
+    fn groups_of_three_digits_are_separated_by_blanks() {
         for (value, decimals, text) in [
             (0.0, 0, "0"),
             (999.4, 0, "999"),
             (16_384.0, 0, "16 384"),
             (1_234_567.89, 1, "1 234 567.9"),
         ] {
-            assert_eq!(grouped(value, decimals), text);
+            assert_eq!(format_grouped(value, decimals), text);
         }
     }
 

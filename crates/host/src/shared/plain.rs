@@ -1,10 +1,9 @@
 //! Makes text from files and boards safe for a terminal.
 //!
-//! A terminal executes escape sequences: one in the name of a robot or in a recorded line moves the cursor, changes
-//! the window's title or hides the text after it. So text from a file or a board is shown with control characters
-//! spelled out.
+//! A terminal executes escape sequences. An escape sequence in the name of a robot or in a recorded line could move the
+//! cursor, change the window's title or hide text. So control characters from a file or a board are spelled out.
 
-/// The text with every control character as an escape of Rust, such as `\u{1b}`.
+/// Returns the text with every control character as an escape of Rust, such as `\u{1b}`.
 pub fn escape_controls(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     for character in text.chars() {
@@ -17,7 +16,8 @@ pub fn escape_controls(text: &str) -> String {
     result
 }
 
-/// The text with every control character escaped, except line feeds; the middle of a very long line is omitted.
+/// Returns the text with every control character escaped, except line feeds. The middle of a very long line is
+/// omitted.
 pub fn readable_lines(text: &str) -> String {
     let lines: Vec<String> = text
         .split('\n')
@@ -26,18 +26,18 @@ pub fn readable_lines(text: &str) -> String {
     lines.join("\n")
 }
 
-/// Replaces the middle of a very long line by the number of its characters.
+/// Replaces the middle of a very long line by the number of omitted characters.
 fn shorten(line: &str) -> String {
     const SIDE_LENGTH: usize = 300;
-    let count = line.chars().count();
-    if count <= 3 * SIDE_LENGTH {
+    let char_count = line.chars().count();
+    if char_count <= 3 * SIDE_LENGTH {
         return line.to_owned();
     }
     let start: String = line.chars().take(SIDE_LENGTH).collect();
-    let end: String = line.chars().skip(count - SIDE_LENGTH).collect();
+    let end: String = line.chars().skip(char_count - SIDE_LENGTH).collect();
     format!(
         "{start} [...{} characters...] {end}",
-        count - 2 * SIDE_LENGTH
+        char_count - 2 * SIDE_LENGTH
     )
 }
 

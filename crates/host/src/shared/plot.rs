@@ -6,49 +6,49 @@ use std::fmt::Write as _;
 use svg::node::element::{Group, Path, Polyline};
 
 use crate::shared::ink::{
-    DARK, GRID, curve, edged, line, rectangle, text_end, text_middle, text_start,
+    DARK, GRID_COLOUR, curve, line, outlined, rectangle, text_end, text_middle, text_start,
 };
 
-/// Viridis in ten bands: even steps in lightness, so that it is legible in grey and for every kind of colour
+/// Viridis in ten bands of evenly increasing lightness, which are legible in grey print and with every kind of colour
 /// vision.
 pub const VIRIDIS: &[&str] = &[
     "#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58",
     "#b5de2b", "#fde725",
 ];
 
-/// Light blues, for maps that carry coloured lines.
+/// Light blues, for maps under coloured lines.
 pub const BLUES: &[&str] = &[
     "#f7fbff", "#e3eef8", "#d0e1f2", "#b7d4ea", "#9ac7e0", "#7fb8da", "#65a9d2",
 ];
 
 /// The colour of impossible regions.
-pub const IMPOSSIBLE: &str = "#d4d0cb";
+pub const IMPOSSIBLE_COLOUR: &str = "#d4d0cb";
 
 /// A rectangle of the page with a coordinate system.
 #[derive(Clone, Copy)]
 pub struct Plot {
-    /// Left upper corner on the page.
+    /// Upper left corner on the page.
     pub corner: (f64, f64),
     /// Width and height on the page.
     pub size: (f64, f64),
     /// Range from left to right.
-    pub x: (f64, f64),
+    pub x_range: (f64, f64),
     /// Range from bottom to top.
-    pub y: (f64, f64),
+    pub y_range: (f64, f64),
 }
 
 /// Ticks and name of an axis.
 pub struct Axis<'a> {
     /// Distance between ticks.
-    pub step: f64,
+    pub tick_step: f64,
     /// Name and unit.
     pub name: &'a str,
 }
 
 impl<'a> Axis<'a> {
-    /// An axis with ticks at multiples of `step`.
-    pub const fn new(step: f64, name: &'a str) -> Self {
-        Self { step, name }
+    /// An axis with ticks at multiples of `tick_step`.
+    pub const fn new(tick_step: f64, name: &'a str) -> Self {
+        Self { tick_step, name }
     }
 }
 
@@ -56,38 +56,38 @@ impl Plot {
     /// The position of a point on the page.
     pub fn page_point(&self, x: f64, y: f64) -> (f64, f64) {
         (
-            self.corner.0 + self.size.0 * (x - self.x.0) / (self.x.1 - self.x.0),
-            self.corner.1 + self.size.1 * (self.y.1 - y) / (self.y.1 - self.y.0),
+            self.corner.0 + self.size.0 * (x - self.x_range.0) / (self.x_range.1 - self.x_range.0),
+            self.corner.1 + self.size.1 * (self.y_range.1 - y) / (self.y_range.1 - self.y_range.0),
         )
     }
 
     /// Page units per unit of x.
     pub fn scale(&self) -> f64 {
-        self.size.0 / (self.x.1 - self.x.0)
+        self.size.0 / (self.x_range.1 - self.x_range.0)
     }
 
     /// The lower right corner on the page.
-    fn far_corner(&self) -> (f64, f64) {
+    fn lower_right_corner(&self) -> (f64, f64) {
         (self.corner.0 + self.size.0, self.corner.1 + self.size.1)
     }
 
     /// Adds a grid in the background.
     pub fn draw_grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
-        for value in ticks(self.x, x.step) {
+        for value in ticks(self.x_range, x.tick_step) {
             let page_x = self.page_point(value, 0.0).0;
             group = group.add(line(
                 (page_x, self.corner.1),
-                (page_x, self.far_corner().1),
-                GRID,
+                (page_x, self.lower_right_corner().1),
+                GRID_COLOUR,
                 1.0,
             ));
         }
-        for value in ticks(self.y, y.step) {
+        for value in ticks(self.y_range, y.tick_step) {
             let page_y = self.page_point(0.0, value).1;
             group = group.add(line(
                 (self.corner.0, page_y),
-                (self.far_corner().0, page_y),
-                GRID,
+                (self.lower_right_corner().0, page_y),
+                GRID_COLOUR,
                 1.0,
             ));
         }
@@ -96,19 +96,23 @@ impl Plot {
 
     /// Adds frame, ticks, numbers and names.
     pub fn draw_axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
-        let (right, bottom) = self.far_corner();
-        group = group.add(edged(rectangle(self.corner, self.size, "none"), DARK, 1.0));
-        for value in ticks(self.x, x.step) {
+        let (right, bottom) = self.lower_right_corner();
+        group = group.add(outlined(
+            rectangle(self.corner, self.size, "none"),
+            DARK,
+            1.0,
+        ));
+        for value in ticks(self.x_range, x.tick_step) {
             let page_x = self.page_point(value, 0.0).0;
             group = group
                 .add(line((page_x, bottom), (page_x, bottom + 6.0), DARK, 1.0))
                 .add(text_middle(
-                    &format_tick(value, x.step),
+                    &format_tick(value, x.tick_step),
                     (page_x, bottom + 23.0),
                     15.0,
                 ));
         }
-        for value in ticks(self.y, y.step) {
+        for value in ticks(self.y_range, y.tick_step) {
             let page_y = self.page_point(0.0, value).1;
             group = group
                 .add(line(
@@ -118,7 +122,7 @@ impl Plot {
                     1.0,
                 ))
                 .add(text_end(
-                    &format_tick(value, y.step),
+                    &format_tick(value, y.tick_step),
                     (self.corner.0 - 10.0, page_y + 5.0),
                     15.0,
                 ));
@@ -133,31 +137,31 @@ impl Plot {
         )
     }
 
-    /// Adds a map of `cells` (columns, rows) in bands of colour. `colour` returns the colour at the middle of a cell,
-    /// or `None` for an empty cell. Each colour is one path; neighbours of equal colour in a row become one
-    /// rectangle.
+    /// Adds a map of cells in bands of colour. `cell_counts` are the numbers of columns and rows. `colour` returns the
+    /// colour at the middle of a cell, or `None` for an empty cell. Each colour is one path. Neighbours of equal colour
+    /// in a row become one rectangle.
     pub fn draw_map(
         &self,
         mut group: Group,
-        cells: (usize, usize),
+        cell_counts: (usize, usize),
         colour: impl Fn(f64, f64) -> Option<&'static str>,
     ) -> Group {
-        let width = (self.x.1 - self.x.0) / cells.0 as f64;
-        let height = (self.y.1 - self.y.0) / cells.1 as f64;
+        let width = (self.x_range.1 - self.x_range.0) / cell_counts.0 as f64;
+        let height = (self.y_range.1 - self.y_range.0) / cell_counts.1 as f64;
         let mut outlines: BTreeMap<&str, String> = BTreeMap::new();
-        for row in 0..cells.1 {
-            let y = self.y.0 + row as f64 * height;
-            let left_of = |column: usize| self.x.0 + column as f64 * width;
+        for row in 0..cell_counts.1 {
+            let y = self.y_range.0 + row as f64 * height;
+            let left_of = |column: usize| self.x_range.0 + column as f64 * width;
             let colour_of = |column: usize| colour(left_of(column) + width / 2.0, y + height / 2.0);
             let mut first_column = 0;
             let mut fill = colour_of(0);
-            for column in 1..=cells.0 {
-                let next_fill = if column < cells.0 {
+            for column in 1..=cell_counts.0 {
+                let next_fill = if column < cell_counts.0 {
                     colour_of(column)
                 } else {
                     None
                 };
-                if column < cells.0 && next_fill == fill {
+                if column < cell_counts.0 && next_fill == fill {
                     continue;
                 }
                 if let Some(fill) = fill {
@@ -202,20 +206,20 @@ fn format_tick(value: f64, step: f64) -> String {
 }
 
 /// A scale of colours for a quantity.
-pub struct Scale {
+pub struct ColourScale {
     /// Value at the lower end of the first band.
-    pub least: f64,
+    pub min: f64,
     /// Value at the upper end of the last band.
-    pub most: f64,
+    pub max: f64,
     /// The bands' colours.
     pub colours: &'static [&'static str],
 }
 
-impl Scale {
+impl ColourScale {
     /// The colour of a value; a value outside the range gets the nearest band.
     pub fn colour(&self, value: f64) -> &'static str {
-        let fraction = (value - self.least) / (self.most - self.least);
-        // A value on a limit belongs to the band above it, despite rounding.
+        let fraction = (value - self.min) / (self.max - self.min);
+        // A value on the limit of two bands belongs to the upper band, despite rounding.
         let band_index = (fraction * self.colours.len() as f64 + 1e-9).max(0.0) as usize;
         self.colours[band_index.min(self.colours.len() - 1)]
     }
@@ -236,7 +240,7 @@ impl Scale {
             group = group.add(rectangle((corner.0, top), (22.0, band_height), colour));
         }
         for i in 0..=count {
-            let value = self.least + (self.most - self.least) * i as f64 / count as f64;
+            let value = self.min + (self.max - self.min) * i as f64 / count as f64;
             let top = corner.1 + height - i as f64 * band_height;
             group = group.add(text_start(
                 &format!("{value:.digits$}"),
@@ -250,8 +254,8 @@ impl Scale {
     }
 }
 
-/// Adds an entry of a legend: a short line and its meaning.
-pub fn draw_entry(
+/// Adds an entry of a legend: a short line and the line's meaning.
+pub fn draw_legend_entry(
     group: Group,
     point: (f64, f64),
     colour: &str,

@@ -1,23 +1,22 @@
-//! The options that give a pose, and the bounds of quantities on the command line. Beyond these bounds a double has
-//! too few digits for the result.
+//! The options for a pose, and the bounds of quantities on the command line. Beyond these bounds a double has too few
+//! digits for the result.
 
 use std::fmt;
 
 use lizard_kinematics::Pose;
 
-/// The servo angles' names in servo order, A1 to A4: columns, flags and keys
-/// come in this order everywhere.
-pub const ANGLES: [&str; 4] = ["theta1", "theta4", "theta8", "theta5"];
+/// The servo angles' names in servo order, A1 to A4. Columns, flags and keys are in this order everywhere.
+pub const ANGLE_NAMES: [&str; 4] = ["theta1", "theta4", "theta8", "theta5"];
 
-/// A physical quantity, which sets the bounds of a typed number.
+/// A physical quantity with the bounds of its numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
-    most: f64,
+    max: f64,
     unit: &'static str,
 }
 
 impl Quantity {
-    /// An angle, degrees: some thousand turns.
+    /// An angle, degrees; the bound is some thousand turns.
     pub const ANGLE: Self = Self::up_to(1e6, "degrees");
     /// A speed of a servo, deg/s.
     pub const RATE: Self = Self::up_to(1e6, "deg/s");
@@ -26,12 +25,12 @@ impl Quantity {
     /// A time, s.
     pub const TIME: Self = Self::up_to(1e9, "s");
     /// A length in units of D.
-    pub const SHARE: Self = Self::up_to(1e6, "D");
+    pub const PROPORTION: Self = Self::up_to(1e6, "D");
     /// A coordinate or a length, mm.
     pub const LENGTH: Self = Self::up_to(1e6, "mm");
 
     const fn up_to(max: f64, unit: &'static str) -> Self {
-        Self { most: max, unit }
+        Self { max, unit }
     }
 
     /// A parser of this quantity for clap.
@@ -45,7 +44,7 @@ impl Quantity {
     /// Fails if the text is not a number, or if the number is out of bounds; NaN and infinity are out of bounds.
     pub fn parse(self, text: &str) -> Result<f64, NumberFault> {
         match text.parse::<f64>() {
-            Ok(value) if value.abs() <= self.most => Ok(value),
+            Ok(value) if value.abs() <= self.max => Ok(value),
             Ok(value) if !value.is_finite() => Err(NumberFault::NotFinite),
             Ok(_) => Err(NumberFault::OutOfRange(self)),
             Err(_) => Err(NumberFault::NotANumber),
@@ -69,8 +68,8 @@ impl fmt::Display for NumberFault {
         match self {
             Self::NotANumber => f.write_str("is not a number"),
             Self::NotFinite => f.write_str("is not a finite number"),
-            Self::OutOfRange(Quantity { most, unit }) => {
-                write!(f, "is not within -{most} to {most} {unit}")
+            Self::OutOfRange(Quantity { max, unit }) => {
+                write!(f, "is not within -{max} to {max} {unit}")
             }
         }
     }
@@ -102,7 +101,7 @@ pub struct PoseArgs {
 
 impl PoseArgs {
     /// The pose of the options; `None` if none of them is given. clap checks that the pose is complete.
-    pub fn get(&self) -> Option<Pose> {
+    pub fn to_pose(&self) -> Option<Pose> {
         Some(Pose {
             theta1: self.theta1?,
             theta4: self.theta4?,

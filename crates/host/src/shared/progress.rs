@@ -1,4 +1,4 @@
-//! Progress bars on standard error, which are hidden if that is not a terminal.
+//! Progress bars on standard error. They are hidden if standard error is not a terminal.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ pub fn progress_bar(length: usize, template: &str) -> ProgressBar {
     ProgressBar::new(length as u64).with_style(style)
 }
 
-/// A display of the time that a computation without steps has taken so far; removed when dropped.
+/// A display of the elapsed time, for a computation without steps. Dropping it removes the display.
 pub struct Spinner(ProgressBar);
 
 impl Spinner {

@@ -1,14 +1,14 @@
 //! The robot that a command uses.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use lizard_robot::Robot;
 
 use crate::Failure;
 use crate::shared::files::{self, note_input};
 
-/// The robot.toml of this source tree, for use where no robot.toml is found.
-pub(crate) const BUILT_IN: &str = include_str!("../../../../robot.toml");
+/// The text of the source tree's robot.toml, for use if no robot.toml is found.
+pub(crate) const DEFAULT_ROBOT: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.
 const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
@@ -23,13 +23,13 @@ const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
 ];
 
 /// The names of the robots inside the program.
-pub(crate) fn names() -> [&'static str; BUILT_IN_ROBOTS.len()] {
+pub(crate) fn built_in_names() -> [&'static str; BUILT_IN_ROBOTS.len()] {
     BUILT_IN_ROBOTS.map(|(name, _)| name)
 }
 
 /// A robot of robots/, for tests.
 #[cfg(test)]
-pub fn named(name: &str) -> Robot {
+pub fn built_in_robot(name: &str) -> Robot {
     let entry = BUILT_IN_ROBOTS
         .iter()
         .find(|(known_name, _)| *known_name == name);
@@ -92,11 +92,6 @@ impl RobotFile {
         })
     }
 
-    /// The file that was named with `--robot`; `None` without this option.
-    pub fn given(&self) -> Option<&Path> {
-        self.path.as_deref()
-    }
-
     /// The name of the robot's source for messages.
     ///
     /// # Errors
@@ -126,7 +121,7 @@ impl RobotFile {
         let folder = current_folder()?;
         let mut candidates = folder.ancestors().map(|folder| folder.join("robot.toml"));
         let file = candidates.find(|path| path.is_file());
-        Ok(file.map_or(RobotSource::BuiltIn(BUILT_IN), RobotSource::File))
+        Ok(file.map_or(RobotSource::BuiltIn(DEFAULT_ROBOT), RobotSource::File))
     }
 }
 

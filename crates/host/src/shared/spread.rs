@@ -1,11 +1,10 @@
 //! Long computations spread over machines.
 //!
-//! `lizard prove --part 2/8` computes an eighth and prints what it has found as one line;
-//! `lizard merge` takes all eight and prints the same bytes as one machine. This holds by
-//! construction: a computation is a list of pieces that do not depend on each other. One
-//! machine computes them all, a part computes its own pieces, and a merge runs the same
-//! program with the pieces that it has read. A part contains the version, the options and
-//! the robot, so that parts of different computations cannot be mixed.
+//! `lizard prove --part 2/8` computes one of eight parts and prints its results as one line. `lizard merge` reads all
+//! eight lines and prints the same bytes as a single machine would. This holds by construction: a computation is a
+//! list of pieces that do not depend on each other. A single machine computes all pieces, a part computes its own
+//! pieces, and a merge runs the same program with the pieces that it has read. A part's line contains the version, the
+//! options and the robot, so that parts of different computations cannot be mixed.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -28,7 +27,7 @@ pub struct Part {
     /// The number of this part, from 1.
     pub(crate) number: u32,
     /// The number of all parts.
-    pub(crate) of: u32,
+    pub(crate) part_count: u32,
 }
 
 impl FromStr for Part {
@@ -37,12 +36,12 @@ impl FromStr for Part {
     fn from_str(text: &str) -> Result<Self, String> {
         let parse_failure =
             || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MAX_PARTS}");
-        let (number, of) = text.split_once('/').ok_or_else(parse_failure)?;
-        let (Ok(number), Ok(of)) = (number.parse(), of.parse()) else {
+        let (number, part_count) = text.split_once('/').ok_or_else(parse_failure)?;
+        let (Ok(number), Ok(part_count)) = (number.parse(), part_count.parse()) else {
             return Err(parse_failure());
         };
-        if (1..=MAX_PARTS).contains(&of) && (1..=of).contains(&number) {
-            Ok(Self { number, of })
+        if (1..=MAX_PARTS).contains(&part_count) && (1..=part_count).contains(&number) {
+            Ok(Self { number, part_count })
         } else {
             Err(parse_failure())
         }
@@ -59,20 +58,22 @@ impl TryFrom<String> for Part {
 
 impl From<Part> for String {
     fn from(part: Part) -> Self {
-        format!("{}/{}", part.number, part.of)
+        format!("{}/{}", part.number, part.part_count)
     }
 }
 
 impl Part {
-    /// True if a piece belongs to this part. Neighbouring pieces go to different parts, because a
-    /// piece that takes long often has neighbours that do too.
+    /// True if a piece belongs to this part. Neighbouring pieces belong to different parts, because the neighbours of a
+    /// slow piece are often slow, too.
     fn has_piece(self, piece: usize) -> bool {
-        piece % self.of as usize == self.number as usize - 1
+        piece % self.part_count as usize == self.number as usize - 1
     }
 
-    /// The number of this part's pieces.
-    pub fn count(self, pieces: usize) -> usize {
-        (0..pieces).filter(|piece| self.has_piece(*piece)).count()
+    /// The number of this part's pieces, of `total_count` pieces.
+    pub fn piece_count(self, total_count: usize) -> usize {
+        (0..total_count)
+            .filter(|piece| self.has_piece(*piece))
+            .count()
     }
 
     /// Computes this part's pieces and prints them.
@@ -83,12 +84,12 @@ impl Part {
         self,
         command: &C,
         robot: &RobotFile,
-        pieces: usize,
+        piece_count: usize,
         mut compute_piece: impl FnMut(usize) -> T,
     ) -> Result<(), Failure> {
         let robot = robot.text()?;
         let mut values = BTreeMap::new();
-        for index in (0..pieces).filter(|index| self.has_piece(*index)) {
+        for index in (0..piece_count).filter(|index| self.has_piece(*index)) {
             values.insert(index, serde_json::to_value(compute_piece(index))?);
         }
         let output = PartOutput {
@@ -97,7 +98,7 @@ impl Part {
             options: serde_json::to_value(command)?,
             robot,
             part: self,
-            pieces,
+            pieces: piece_count,
             found: values,
         };
         Ok(json::write_line(&mut io::stdout().lock(), &output)?)
@@ -106,7 +107,7 @@ impl Part {
 
 /// The robot of a computation that can be spread, and `--part`.
 #[derive(clap::Args, Debug, Default)]
-pub struct Spread {
+pub struct SpreadArgs {
     #[command(flatten)]
     pub(crate) robot: RobotFile,
     /// Compute only one of N parts, and print it for `lizard merge`
@@ -123,7 +124,7 @@ pub trait Spreads: Serialize + DeserializeOwned {
     const COMMAND: &'static str;
 
     /// The command's robot and `--part`.
-    fn spread(&mut self) -> &mut Spread;
+    fn spread(&mut self) -> &mut SpreadArgs;
 }
 
 /// The output of one part.
@@ -143,28 +144,31 @@ pub(crate) struct PartOutput {
     pub(crate) found: BTreeMap<usize, Value>,
 }
 
-impl Spread {
+impl SpreadArgs {
     /// Sets the robot and the results of all parts, for a merge.
     pub(crate) fn set_merged(&mut self, robot: String, pieces: BTreeMap<usize, Value>) {
         self.robot = RobotFile::with_text(robot);
         self.merged = Some(pieces);
     }
 
-    /// The only part to compute; `None` without `--part`.
+    /// The part to compute; `None` without `--part`.
     pub fn part(&self) -> Option<Part> {
         self.part
     }
 
-    /// Returns the results of all parts in order; `None` if this is not a merge.
+    /// Returns the pieces of all parts in order, in a merge; `None` if this is not a merge.
     ///
     /// # Errors
     /// Fails if the parts belong to another computation.
-    pub fn read<T: DeserializeOwned>(&self, count: usize) -> Result<Option<Vec<T>>, Failure> {
+    pub fn read_merged<T: DeserializeOwned>(
+        &self,
+        piece_count: usize,
+    ) -> Result<Option<Vec<T>>, Failure> {
         let Some(merged) = &self.merged else {
             return Ok(None);
         };
         let values = merged.iter().zip(0..);
-        if merged.len() != count
+        if merged.len() != piece_count
             || values
                 .clone()
                 .any(|((index, _), expected_index)| *index != expected_index)
@@ -176,34 +180,34 @@ impl Spread {
         pieces.map(Some).map_err(|_| wrong_parts_failure())
     }
 
-    /// Returns all pieces in order: computed by `compute_piece` from their indices, or read from parts in
-    /// a merge. With `--part`, prints the pieces of that part and returns `None`.
+    /// Returns all pieces in order: computed from their indices by `compute_piece`, or in a merge read from the parts.
+    /// With `--part`, prints the pieces of that part and returns `None`.
     ///
     /// # Errors
     /// Fails if the output cannot be written, or the parts belong to another computation.
     pub fn all_pieces<T: Serialize + DeserializeOwned>(
         &self,
         command: &impl Spreads,
-        count: usize,
+        piece_count: usize,
         compute_piece: impl FnMut(usize) -> T,
     ) -> Result<Option<Vec<T>>, Failure> {
         if let Some(part) = self.part {
             return part
-                .print(command, &self.robot, count, compute_piece)
+                .print(command, &self.robot, piece_count, compute_piece)
                 .map(|()| None);
         }
-        let pieces = self.read(count)?;
+        let pieces = self.read_merged(piece_count)?;
         Ok(Some(pieces.unwrap_or_else(|| {
-            (0..count).map(compute_piece).collect()
+            (0..piece_count).map(compute_piece).collect()
         })))
     }
 
-    /// The number of pieces computed here, for a progress bar.
-    pub fn own(&self, count: usize) -> usize {
+    /// The number of pieces that this run computes, for a progress bar.
+    pub fn own_piece_count(&self, total_count: usize) -> usize {
         match (&self.merged, self.part) {
             (Some(_), _) => 0,
-            (None, None) => count,
-            (None, Some(part)) => part.count(count),
+            (None, None) => total_count,
+            (None, Some(part)) => part.piece_count(total_count),
         }
     }
 }
@@ -224,7 +228,7 @@ mod tests {
                 let parts = (1..=part_count).filter(|number| {
                     Part {
                         number: *number,
-                        of: part_count,
+                        part_count,
                     }
                     .has_piece(piece)
                 });
@@ -235,7 +239,13 @@ mod tests {
 
     #[test]
     fn a_part_is_written_as_two_numbers() {
-        assert_eq!("2/8".parse(), Ok(Part { number: 2, of: 8 }));
+        assert_eq!(
+            "2/8".parse(),
+            Ok(Part {
+                number: 2,
+                part_count: 8
+            })
+        );
         for invalid_text in [
             "",
             "2",

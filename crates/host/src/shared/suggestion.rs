@@ -1,7 +1,7 @@
 //! Suggestions for a mistyped name.
 
-/// Smallest similarity of two words, from 0 to 1, at which one counts as a mistyped form of the other; the same
-/// value as clap's for commands and options.
+/// Smallest similarity of two words, from 0 to 1, at which a word counts as a mistyped form of a name. clap uses the
+/// same value for commands and options.
 const MIN_SIMILARITY: f64 = 0.7;
 
 /// The text `; did you mean NAME?` with the name that is most similar to `word`; empty if no name is similar.

@@ -27,7 +27,7 @@ const CYCLES_PER_BYTE: u64 = 1400;
 pub enum BoardError {
     /// The firmware cannot be loaded.
     #[error(transparent)]
-    Load(#[from] firmware::Unreadable),
+    Load(#[from] firmware::ReadError),
     /// The first line is not the firmware's banner.
     #[error("no banner `# lizard ...` within {BANNER_TIMEOUT_MS} ms of power-on, but {0:?}")]
     NoBanner(Option<String>),
@@ -100,7 +100,7 @@ impl SimulatedBoard {
     /// # Errors
     /// Fails if the ELF file is missing or invalid.
     pub fn power_on(elf: &Path, fidelity: Fidelity, robot: &Robot) -> Result<Self, BoardError> {
-        let image = firmware::with_robot(elf, robot)?;
+        let image = firmware::read_with_robot(elf, robot)?;
         Ok(Self::with_image(image, fidelity, robot))
     }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lizard_parts::Course;
 use lizard_robot::Robot;
-use lizard_twin::FRAME;
+use lizard_twin::FRAME_S;
 use simulated_uno::{CYCLES_PER_US, Fidelity, Uno};
 
 use crate::shared::firmware;
@@ -31,7 +31,7 @@ pub fn record_course(
     let recording = twin::record(&mut uno, robot, &script)?;
     let log = &recording.frames;
     let stop_ms = script.steps.last().map_or(script.end_ms, |step| step.ms);
-    let end_s = log.index_at(stop_ms as f64 / 1000.0) as f64 * FRAME;
+    let end_s = log.index_at(stop_ms as f64 / 1000.0) as f64 * FRAME_S;
     Ok(Course {
         gait: gait.name().to_owned(),
         frames: target_sweeps(robot, log),
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn a_servo_without_a_pulse_keeps_its_previous_target() {
-        let robot = crate::shared::robot_file::named("unequal");
+        let robot = crate::shared::robot_file::built_in_robot("unequal");
         let log = FrameLog {
             widths: vec![
                 [0; 4],

@@ -3,7 +3,7 @@
 use fastrand::Rng;
 
 use super::*;
-use crate::key::{PLAY, TWIST};
+use crate::key::{PLAY_INDEX, TWIST_INDEX};
 use crate::problem::MODEL_ERROR;
 
 /// Number of gaits.
@@ -35,17 +35,16 @@ fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
 
-/// The values from which each fit starts, in place of those of a robot.toml: zero, or the least possible value.
-fn start_values() -> Values {
-    std::array::from_fn(|i| KEYS[i].least.max(0.0))
+/// The values of the imaginary robot.toml: zero, or the least possible value of the key.
+fn file_values() -> Values {
+    std::array::from_fn(|i| KEYS[i].min_value.max(0.0))
 }
 
-/// The movements of a robot with random measurement errors, as a camera sees them from a tag card that may be glued
-/// on slightly out of place.
+/// The movements of a robot with random measurement errors, as a camera sees them by a card with this mounting error.
 fn measure_robot(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let movement_of = |travel: Travel| {
-        let seen_travel = card.card_travel(travel);
-        let parts = [seen_travel.forward, seen_travel.left, seen_travel.turn];
+        let card_travel = card.card_travel(travel);
+        let parts = [card_travel.forward, card_travel.left, card_travel.turn];
         MeasuredMovement {
             gait: "walk".to_owned(),
             pace: 1.0,
@@ -67,7 +66,7 @@ fn verdicts_of(result: &Identified) -> Vec<Verdict> {
 }
 
 #[test]
-fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
+fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
     let (
         mut within_count,
         mut changed_count,
@@ -78,11 +77,11 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
     const ROBOTS: u64 = 300;
     for seed in 0..ROBOTS {
         let mut rng = Rng::with_seed(seed);
-        let mut true_values = start_values();
+        let mut true_values = file_values();
         let is_changed: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
         for i in (0..KEY_COUNT).filter(|&i| is_changed[i]) {
             true_values[i] += KEYS[i].prior_error()
-                * if i == PLAY {
+                * if i == PLAY_INDEX {
                     rng.f64()
                 } else {
                     random_deviate(&mut rng).max(-1.5).abs()
@@ -90,7 +89,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
         }
         let card = random_card(&mut rng);
         let movements = measure_robot(&true_values, card, &mut rng);
-        let result = solve(&movements, start_values(), &model_travels).expect("a fit");
+        let result = solve(&movements, file_values(), &model_travels).expect("a fit");
         explained_count += f64::from(u8::from(result.goodness.is_explained));
         for i in 0..KEY_COUNT {
             let key = &result.keys[i];
@@ -98,13 +97,13 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
             if is_changed[i] {
                 changed_count += 1.0;
                 within_count += f64::from(u8::from(
-                    (key.after - true_values[i]).abs() <= 2.0 * key.error,
+                    (key.new_value - true_values[i]).abs() <= 2.0 * key.error,
                 ));
             } else {
                 unchanged_count += 1.0;
                 moved_count += f64::from(u8::from(key.verdict == Verdict::Moved));
             }
-            let distance = (key.after - key.before).abs();
+            let distance = (key.new_value - key.file_value).abs();
             assert_eq!(key.verdict == Verdict::Moved, distance > 0.0);
             assert!(distance == 0.0 || distance >= 2.0 * key.error);
         }
@@ -123,25 +122,22 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_right_ones_stay() {
 }
 
 #[test]
-fn at_a_fold_the_error_is_that_of_the_flatter_side() {
-    /// Twist below which the foot carries no load, so a shorter foot changes nothing more, mm.
+fn at_a_fold_of_the_model_the_error_is_that_of_the_flatter_side() {
+    /// Twist below which the foot carries no load, mm; a shorter foot changes nothing more.
     const FOLD: f64 = -0.5;
     let folded_model = |values: &Values| {
         let mut values = *values;
-        values[TWIST] = values[TWIST].max(FOLD);
+        values[TWIST_INDEX] = values[TWIST_INDEX].max(FOLD);
         model_travels(&values)
     };
-    let mut true_values = start_values();
-    true_values[TWIST] = FOLD;
+    let mut true_values = file_values();
+    true_values[TWIST_INDEX] = FOLD;
     let mut movements = measure_robot(&true_values, Card::default(), &mut Rng::with_seed(1));
     for (movement, travel) in movements.iter_mut().zip(model_travels(&true_values)) {
         movement.mean = [travel.forward, travel.left, travel.turn];
     }
     let twist_error_of = |model: &dyn Fn(&Values) -> Vec<Travel>| {
-        solve(&movements, start_values(), model)
-            .expect("a fit")
-            .keys[TWIST]
-            .error
+        solve(&movements, file_values(), model).expect("a fit").keys[TWIST_INDEX].error
     };
     let [folded_error, smooth_error] = [
         twist_error_of(&folded_model),
@@ -154,26 +150,26 @@ fn at_a_fold_the_error_is_that_of_the_flatter_side() {
 }
 
 #[test]
-fn a_key_without_influence_stays_and_is_said_to_be_untold() {
-    let blind_model = |values: &Values| {
+fn a_key_without_influence_keeps_its_value_and_is_undetermined() {
+    let model_without_key_5 = |values: &Values| {
         let mut values = *values;
         values[5] = 0.7;
         model_travels(&values)
     };
-    let mut true_values = start_values();
+    let mut true_values = file_values();
     (true_values[0], true_values[5]) = (8.0, 1.1);
     let mut rng = Rng::with_seed(1);
     let card = random_card(&mut rng);
     let mut movements = measure_robot(&true_values, card, &mut rng);
-    for (movement, travel) in movements.iter_mut().zip(blind_model(&true_values)) {
-        let seen_travel = card.card_travel(travel);
-        movement.mean = [seen_travel.forward, seen_travel.left, seen_travel.turn];
+    for (movement, travel) in movements.iter_mut().zip(model_without_key_5(&true_values)) {
+        let card_travel = card.card_travel(travel);
+        movement.mean = [card_travel.forward, card_travel.left, card_travel.turn];
     }
-    let result = solve(&movements, start_values(), &blind_model).expect("a fit");
+    let result = solve(&movements, file_values(), &model_without_key_5).expect("a fit");
     let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
     (expected[0], expected[5]) = (Verdict::Moved, Verdict::Undetermined);
     assert_eq!(verdicts_of(&result), expected);
-    assert_eq!(result.keys[5].after, result.keys[5].before);
+    assert_eq!(result.keys[5].new_value, result.keys[5].file_value);
     assert!(
         result.keys[5].error > 0.9 * KEYS[5].prior_error(),
         "{:?}",
@@ -182,8 +178,8 @@ fn a_key_without_influence_stays_and_is_said_to_be_untold() {
 }
 
 #[test]
-fn two_keys_that_look_alike_are_named() {
-    let alike_model = |values: &Values| {
+fn two_keys_with_the_same_effect_are_reported_as_correlated() {
+    let equal_effect_model = |values: &Values| {
         let mut values = *values;
         let sum = values[2] + values[3];
         values[2] = sum + 0.02 * values[3];
@@ -191,10 +187,10 @@ fn two_keys_that_look_alike_are_named() {
         model_travels(&values)
     };
     let mut rng = Rng::with_seed(1);
-    let movements = measure_robot(&start_values(), Card::default(), &mut rng);
-    let result = solve(&movements, start_values(), &alike_model).expect("a fit");
-    let [(a, b, correlation)] = result.correlated[..] else {
-        panic!("{:?}", result.correlated);
+    let movements = measure_robot(&file_values(), Card::default(), &mut rng);
+    let result = solve(&movements, file_values(), &equal_effect_model).expect("a fit");
+    let [(a, b, correlation)] = result.correlated_pairs[..] else {
+        panic!("{:?}", result.correlated_pairs);
     };
     assert_eq!(
         (a.full_name(), b.full_name()),
@@ -204,17 +200,17 @@ fn two_keys_that_look_alike_are_named() {
 }
 
 #[test]
-fn a_way_that_no_key_explains_is_named_and_widens_the_errors() {
+fn a_movement_that_no_key_explains_is_reported_and_widens_the_errors() {
     let mut rng = Rng::with_seed(2);
-    let mut movements = measure_robot(&start_values(), Card::default(), &mut rng);
-    let good_result = solve(&movements, start_values(), &model_travels).expect("a fit");
+    let mut movements = measure_robot(&file_values(), Card::default(), &mut rng);
+    let good_result = solve(&movements, file_values(), &model_travels).expect("a fit");
     assert!(good_result.goodness.is_explained && good_result.goodness.error_factor == 1.0);
     movements[3].mean[0] += 4.0;
-    let bad_result = solve(&movements, start_values(), &model_travels).expect("a fit");
+    let bad_result = solve(&movements, file_values(), &model_travels).expect("a fit");
     let Goodness {
         is_explained,
         error_factor,
-        worst,
+        largest_difference,
         ..
     } = bad_result.goodness;
     assert!(
@@ -222,7 +218,7 @@ fn a_way_that_no_key_explains_is_named_and_widens_the_errors() {
         "{:?}",
         bad_result.goodness
     );
-    assert_eq!((worst.0, worst.1), (3, 0));
+    assert_eq!((largest_difference.0, largest_difference.1), (3, 0));
     for (bad_key, good_key) in bad_result.keys.iter().zip(&good_result.keys) {
         assert!(
             bad_key.error > 4.0 * good_key.error,
@@ -232,15 +228,15 @@ fn a_way_that_no_key_explains_is_named_and_widens_the_errors() {
 }
 
 #[test]
-fn a_play_below_zero_is_not_written() {
+fn a_play_below_zero_is_impossible_and_keeps_the_value_of_the_file() {
     let mut rng = Rng::with_seed(3);
-    let mut movements = measure_robot(&start_values(), Card::default(), &mut rng);
+    let mut movements = measure_robot(&file_values(), Card::default(), &mut rng);
     let travels_with_play = |play: f64| {
-        let mut values = start_values();
-        values[PLAY] = play;
+        let mut values = file_values();
+        values[PLAY_INDEX] = play;
         model_travels(&values)
     };
-    // Shifts the movements by the opposite of what a play of 0.5 deg would do, so that the fit asks for -0.5 deg.
+    // The movements shift by the opposite of the effect of a play of 0.5 deg, so that the fit asks for -0.5 deg.
     for ((movement, base_travel), play_travel) in movements
         .iter_mut()
         .zip(travels_with_play(0.0))
@@ -250,9 +246,9 @@ fn a_play_below_zero_is_not_written() {
         movement.mean[1] -= play_travel.left - base_travel.left;
         movement.mean[2] -= play_travel.turn - base_travel.turn;
     }
-    let result = solve(&movements, start_values(), &model_travels).expect("a fit");
-    let play_key = &result.keys[PLAY];
-    assert_eq!(play_key.after, 0.0);
+    let result = solve(&movements, file_values(), &model_travels).expect("a fit");
+    let play_key = &result.keys[PLAY_INDEX];
+    assert_eq!(play_key.new_value, 0.0);
     assert!(
         matches!(play_key.verdict, Verdict::Impossible(value) if (value + 0.5).abs() < 0.1),
         "{play_key:?}"

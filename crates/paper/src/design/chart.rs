@@ -1,4 +1,4 @@
-//! The performance charts: every figure over the whole (r1, r2, r3) triangle.
+//! The performance charts: all figures of performance over the whole triangle of r1, r2 and r3.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -6,9 +6,9 @@ use serde::Serialize;
 use super::performance::Performance;
 use super::proportions::Proportions;
 
-/// A point of the charts. Lengths in units of D.
+/// A point of the charts, with lengths in units of D.
 #[derive(Clone, Copy, Serialize)]
-pub struct Point {
+pub struct ChartPoint {
     /// The point in the triangle of proportions.
     #[serde(flatten)]
     pub proportions: Proportions,
@@ -17,13 +17,17 @@ pub struct Point {
     pub performance: Performance,
 }
 
-/// Computes the charts at the points of [`triangle`](super::triangle), on all cores. The numbers and their order are
-/// the same in every run. `progress` is called after each point.
-pub fn chart(points: Vec<Proportions>, rings: usize, progress: &(dyn Fn() + Sync)) -> Vec<Point> {
+/// Computes the charts at the points of [`triangle_points`](super::triangle_points), on all cores. The numbers and
+/// their order are the same in every run. `progress` is called after each point.
+pub fn compute_chart(
+    points: Vec<Proportions>,
+    ring_count: usize,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<ChartPoint> {
     let compute = |proportions: Proportions| {
-        let performance = Performance::of(&proportions.at_scale(1.0), rings);
+        let performance = Performance::of(&proportions.at_scale(1.0), ring_count);
         progress();
-        Point {
+        ChartPoint {
             proportions,
             performance,
         }

@@ -1,11 +1,11 @@
-//! The paper's dimensional synthesis (performance-chart-based design methodology), and a search beyond it.
+//! The paper's dimensional synthesis (performance-chart-based design methodology), and a search for better designs.
 
 mod chart;
 mod performance;
 mod proportions;
 mod search;
 
-pub use chart::{Point, chart};
-pub use performance::{CLAIM, Conditioning, Performance, lci};
-pub use proportions::{Proportions, SUM, triangle};
-pub use search::{Demands, Design, Search, design, merge_ranked};
+pub use chart::{ChartPoint, compute_chart};
+pub use performance::{CLAIMED_LCI, Conditioning, Performance, lci};
+pub use proportions::{PROPORTION_SUM, Proportions, triangle_points};
+pub use search::{Demands, Design, Search, find_design, merge_ranked};

@@ -1,18 +1,18 @@
-//! The performance of a five-bar of given proportions: workspace, maximal inscribed circle, and
-//! the local conditioning index over it.
+//! The performance of a five-bar of given proportions: workspace, maximal inscribed circle, and the local conditioning
+//! index over that circle.
 
 use lizard_kinematics::{Circle, FiveBar, Vector, Workspace};
 use serde::Serialize;
 
-/// The bound that the paper claims for the local conditioning index.
-pub const CLAIM: f64 = 0.7;
+/// The lower bound that the paper claims for the local conditioning index.
+pub const CLAIMED_LCI: f64 = 0.7;
 
 /// The performance of a design, in the unit of its lengths.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Performance {
     /// Area of the theoretical workspace, both halves.
     pub area: f64,
-    /// Radius of the maximal inscribed circle; 0 if none.
+    /// Radius of the maximal inscribed circle; 0 if there is no circle.
     pub r_mic: f64,
     /// Height of the inscribed circle's centre above the base; 0 if there is no circle.
     pub y_mic: f64,
@@ -25,7 +25,7 @@ pub struct Performance {
 pub struct Conditioning {
     /// Mean index over the circle's area (the global conditioning index).
     pub mean: f64,
-    /// Least index, which is on the rim: 0 where the circle touches the workspace's edge.
+    /// Least index; it is on the rim, and 0 at the points where the circle touches the workspace's edge.
     pub least: f64,
     /// Largest index in the circle.
     pub most: f64,
@@ -42,44 +42,44 @@ pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
 }
 
 impl Performance {
-    /// Computes the performance of a five-bar. The inscribed circle is sampled at `rings` rings.
-    pub fn of(bars: &FiveBar, rings: usize) -> Self {
+    /// Computes the performance of a five-bar. The inscribed circle is sampled at `ring_count` rings.
+    pub fn of(bars: &FiveBar, ring_count: usize) -> Self {
         let workspace = Workspace::of(bars);
         let circle = workspace.inscribed_circle();
         Self {
             area: workspace.area(),
             r_mic: circle.map_or(0.0, |circle| circle.radius),
             y_mic: circle.map_or(0.0, |circle| circle.centre.y),
-            lci: circle.map(|circle| Conditioning::sample(bars, circle, rings)),
+            lci: circle.map(|circle| Conditioning::sample(bars, circle, ring_count)),
         }
     }
 }
 
 impl Conditioning {
-    /// Samples rings of equal area, each at its middle, then searches outward for the radius at which the index
-    /// first falls below the claim.
-    fn sample(bars: &FiveBar, circle: Circle, rings: usize) -> Self {
-        let spokes = 4 * rings;
+    /// Samples rings of equal area, each at the ring's middle. Then searches outward for the radius at which the index
+    /// first falls below the claimed bound.
+    fn sample(bars: &FiveBar, circle: Circle, ring_count: usize) -> Self {
+        let spoke_count = 4 * ring_count;
         let mut sum = 0.0;
         let mut count_above = 0;
         let (mut min_index, mut best_sample) = (f64::INFINITY, (0.0_f64, circle.centre));
-        for spoke in 0..spokes {
-            let direction = Vector::direction((spoke as f64 + 0.5) * 360.0 / spokes as f64);
-            for ring in 0..rings {
-                let radius = circle.radius * ((ring as f64 + 0.5) / rings as f64).sqrt();
+        for spoke in 0..spoke_count {
+            let direction = Vector::direction((spoke as f64 + 0.5) * 360.0 / spoke_count as f64);
+            for ring in 0..ring_count {
+                let radius = circle.radius * ((ring as f64 + 0.5) / ring_count as f64).sqrt();
                 let point = circle.centre + direction * radius;
-                let value = lci(bars, point);
-                sum += value;
-                count_above += usize::from(value > CLAIM);
-                min_index = min_index.min(value);
-                if value > best_sample.0 {
-                    best_sample = (value, point);
+                let index = lci(bars, point);
+                sum += index;
+                count_above += usize::from(index > CLAIMED_LCI);
+                min_index = min_index.min(index);
+                if index > best_sample.0 {
+                    best_sample = (index, point);
                 }
             }
         }
-        // The rim itself, with the four points where it touches the edge of the workspace.
-        for spoke in 0..spokes {
-            let direction = Vector::direction(spoke as f64 * 360.0 / spokes as f64);
+        // The rim is sampled, too, with the four points at which it touches the edge of the workspace.
+        for spoke in 0..spoke_count {
+            let direction = Vector::direction(spoke as f64 * 360.0 / spoke_count as f64);
             min_index = min_index.min(lci(bars, circle.centre + direction * circle.radius));
         }
         for shaft in [bars.left_shaft(), bars.right_shaft()] {
@@ -89,26 +89,26 @@ impl Conditioning {
                 min_index = min_index.min(lci(bars, touch_point));
             }
         }
-        let count = (rings * spokes) as f64;
+        let count = (ring_count * spoke_count) as f64;
         Self {
             mean: sum / count,
             least: min_index,
-            most: climb(bars, circle, best_sample, circle.radius / rings as f64),
+            most: largest_index_near(bars, circle, best_sample, circle.radius / ring_count as f64),
             share_above: count_above as f64 / count,
-            radius_above: Self::radius_above(bars, circle, rings),
+            radius_above: Self::radius_above(bars, circle, ring_count),
         }
     }
 
-    /// Radius of the concentric circle within which the index is at least the claim.
-    fn radius_above(bars: &FiveBar, circle: Circle, rings: usize) -> f64 {
-        let step = circle.radius / (2 * rings) as f64;
-        (0..4 * rings)
+    /// Radius of the concentric circle within which the index is at least the claimed bound.
+    fn radius_above(bars: &FiveBar, circle: Circle, ring_count: usize) -> f64 {
+        let step = circle.radius / (2 * ring_count) as f64;
+        (0..4 * ring_count)
             .map(|spoke| {
-                let direction = Vector::direction(spoke as f64 * 90.0 / rings as f64);
+                let direction = Vector::direction(spoke as f64 * 90.0 / ring_count as f64);
                 let is_above_claim =
-                    |radius: f64| lci(bars, circle.centre + direction * radius) >= CLAIM;
+                    |radius: f64| lci(bars, circle.centre + direction * radius) >= CLAIMED_LCI;
                 let Some(first_outside) =
-                    (0..=2 * rings).find(|&i| !is_above_claim(i as f64 * step))
+                    (0..=2 * ring_count).find(|&i| !is_above_claim(i as f64 * step))
                 else {
                     return circle.radius;
                 };
@@ -133,8 +133,13 @@ impl Conditioning {
     }
 }
 
-/// The largest index near a sample in the circle, by hill climbing with steps that halve.
-fn climb(bars: &FiveBar, circle: Circle, start_sample: (f64, Vector), step: f64) -> f64 {
+/// The largest index in the circle near a sample, found by hill climbing with steps that are halved.
+fn largest_index_near(
+    bars: &FiveBar,
+    circle: Circle,
+    start_sample: (f64, Vector),
+    step: f64,
+) -> f64 {
     let (mut value, mut point) = start_sample;
     let mut step_size = step;
     while step_size > 1e-5 * step {

@@ -1,14 +1,14 @@
-//! The parameter design space: non-dimensional links r1 (crank), r2 (coupler),
-//! r3 (half the base) of a symmetrical five-bar, with r1 + r2 + r3 = 0.9.
+//! The parameter design space: non-dimensional links r1 (crank), r2 (coupler) and r3 (half the base) of a symmetrical
+//! five-bar, with r1 + r2 + r3 = 0.9.
 
 use lizard_kinematics::FiveBar;
 use serde::{Deserialize, Serialize};
 
-/// r1 + r2 + r3.
-pub const SUM: f64 = 0.9;
+/// The sum r1 + r2 + r3 of every design.
+pub const PROPORTION_SUM: f64 = 0.9;
 
-/// The smallest r1, r2 or r3 that a design may have; smaller values make D overflow.
-const MIN_LINK: f64 = 0.001;
+/// The smallest r1, r2 or r3 of a design; smaller values make D overflow.
+const MIN_PROPORTION: f64 = 0.001;
 
 /// A point of the design space.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,36 +22,40 @@ pub struct Proportions {
 }
 
 impl Proportions {
-    /// The paper's proportions, which it says were measured on a gecko's head.
+    /// The paper's proportions; according to the paper, they were measured on a gecko's head.
     pub const PAPER: Self = Self {
         r1: 0.3,
         r2: 0.5,
         r3: 0.1,
     };
 
-    /// Checks the constraints of the space: 0 < r1, r2 < 0.9, 0 < r3 < 0.45
-    /// (then r1 + r2 > r3 and the mechanism can be assembled), sum 0.9.
+    /// Checks the constraints of the design space: 0 < r1, r2 < 0.9; 0 < r3 < 0.45, so that r1 + r2 > r3 and the
+    /// mechanism can be assembled; and the sum 0.9.
     ///
     /// # Errors
     /// Returns a message that says which constraint is violated.
     pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
-        for (name, value, max) in [("r1", r1, SUM), ("r2", r2, SUM), ("r3", r3, SUM / 2.0)] {
+        for (name, value, max) in [
+            ("r1", r1, PROPORTION_SUM),
+            ("r2", r2, PROPORTION_SUM),
+            ("r3", r3, PROPORTION_SUM / 2.0),
+        ] {
             if !(value > 0.0 && value < max) {
                 return Err(format!(
                     "{name} is {value}, it must lie between 0 and {max}"
                 ));
             }
-            if value < MIN_LINK {
+            if value < MIN_PROPORTION {
                 return Err(format!(
-                    "{name} is {value:.1e}, too short to build: it must be at least {MIN_LINK}"
+                    "{name} is {value:.1e}, too short to build: it must be at least {MIN_PROPORTION}"
                 ));
             }
         }
         let sum = r1 + r2 + r3;
-        if (sum - SUM).abs() > 1e-9 {
-            let factor = SUM / sum;
+        if (sum - PROPORTION_SUM).abs() > 1e-9 {
+            let factor = PROPORTION_SUM / sum;
             return Err(format!(
-                "r1 + r2 + r3 is {sum:.6}, it must be {SUM}; the same shape is r1 {:.6}, r2 {:.6}, r3 {:.6}",
+                "r1 + r2 + r3 is {sum:.6}, it must be {PROPORTION_SUM}; the same shape is r1 {:.6}, r2 {:.6}, r3 {:.6}",
                 r1 * factor,
                 r2 * factor,
                 r3 * factor
@@ -77,17 +81,16 @@ impl Proportions {
     }
 }
 
-/// The points of the whole triangle on a grid of this step, edges left out
-/// because a link vanishes there.
-pub fn triangle(step: f64) -> Vec<Proportions> {
-    let count = (SUM / step + 1e-9) as usize;
+/// The points of the whole triangle on a grid of this step, without the edges, at which a link vanishes.
+pub fn triangle_points(step: f64) -> Vec<Proportions> {
+    let count = (PROPORTION_SUM / step + 1e-9) as usize;
     let mut points = Vec::new();
     for i in 1..count {
         for j in 1..count {
-            // From integers, so that no rounding decides what is on an edge.
+            // Computed from integers, so that rounding does not decide whether a point is on an edge.
             let (r1, r2) = (i as f64 * step, j as f64 * step);
-            let r3 = SUM - r1 - r2;
-            if r3 > step * 1e-6 && r3 < SUM / 2.0 - step * 1e-6 {
+            let r3 = PROPORTION_SUM - r1 - r2;
+            if r3 > step * 1e-6 && r3 < PROPORTION_SUM / 2.0 - step * 1e-6 {
                 points.push(Proportions { r1, r2, r3 });
             }
         }

@@ -1,36 +1,36 @@
-//! Search for the best proportions of the five-bar for this robot, beyond the paper.
+//! Search for the best proportions of the five-bar for this robot. The paper has no such search.
 //!
 //! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index afterwards. Here every point of
-//! the triangle becomes a robot with the given base. Its cranks are mounted at the neutral angle that allows the
-//! largest sweep within all margins and the servos' travel. All four servos may be at any angle of the sweep at the
-//! same time, so any gait of that amplitude is safe.
+//! the triangle becomes a robot with the given base. The robot's cranks are mounted at the neutral angle that allows
+//! the largest sweep within all margins and the servos' travel. Within this sweep every combination of the four servo
+//! angles is safe, so any gait of that amplitude is safe.
 
 use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::proportions::{Proportions, triangle};
+use super::proportions::{Proportions, triangle_points};
 
 /// The demands on a design that do not depend on its proportions.
 #[derive(Clone, Copy)]
 pub struct Demands {
     /// Base l0, mm.
-    pub base: f64,
+    pub base_mm: f64,
     /// Chassis length l10, mm.
-    pub chassis: f64,
-    /// Length of a leg's crank, mm; it determines the stride.
-    pub leg: f64,
+    pub chassis_length_mm: f64,
+    /// Length of a leg's crank, mm, which determines the stride.
+    pub leg_crank_mm: f64,
     /// Least margins, and range of the slider travel.
     pub limits: Limits,
     /// Servo travel to either side of neutral, degrees.
-    pub travel: f64,
+    pub travel_deg: f64,
     /// Shortest link that can be made, mm.
-    pub shortest: f64,
+    pub min_link_mm: f64,
     /// Sweep within which conditioning index and margin are compared, degrees to either side of neutral.
-    pub sweep: f64,
+    pub sweep_deg: f64,
 }
 
-/// A design that sweeps at least as far as demanded.
+/// A design whose safe sweep is at least as large as demanded.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Design {
     /// The proportions of the five-bar.
@@ -38,7 +38,7 @@ pub struct Design {
     pub proportions: Proportions,
     /// Dimensional factor, mm.
     pub d: f64,
-    /// theta1 at neutral, degrees; the other servo angles mirror it.
+    /// theta1 at neutral, degrees. The other servo angles follow by symmetry.
     pub neutral: f64,
     /// Largest safe sweep to either side, degrees.
     pub sweep: f64,
@@ -54,10 +54,10 @@ pub struct Design {
     pub pareto: bool,
 }
 
-/// Number of points in a piece: enough to occupy all cores.
+/// Number of points in a piece, enough to occupy all cores.
 const PIECE_SIZE: usize = 64;
 
-/// The search, in pieces that do not depend on each other.
+/// The search, divided into pieces that do not depend on each other.
 pub struct Search {
     points: Vec<Proportions>,
     demands: Demands,
@@ -67,7 +67,7 @@ impl Search {
     /// Prepares the search of all points of the triangle on a grid of this step.
     pub fn new(step: f64, demands: Demands) -> Self {
         Self {
-            points: triangle(step),
+            points: triangle_points(step),
             demands,
         }
     }
@@ -77,12 +77,12 @@ impl Search {
         self.points.len().div_ceil(PIECE_SIZE)
     }
 
-    /// The number of points in this many pieces.
-    pub fn point_count(&self, pieces: usize) -> usize {
-        self.points.len().min(pieces * PIECE_SIZE)
+    /// The number of points in `piece_count` pieces.
+    pub fn point_count(&self, piece_count: usize) -> usize {
+        self.points.len().min(piece_count * PIECE_SIZE)
     }
 
-    /// The designs of one piece that meet the demands. `progress` is called after each point.
+    /// Computes the designs of one piece that meet the demands. `progress` is called after each point.
     pub fn compute_piece(&self, index: usize, progress: &(dyn Fn() + Sync)) -> Vec<Design> {
         let points = self
             .points
@@ -90,27 +90,27 @@ impl Search {
             .nth(index)
             .unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
-            let found = design(*point, &self.demands);
+            let design = find_design(*point, &self.demands);
             progress();
-            found
+            design
         });
         designs.collect()
     }
 }
 
-/// The designs of all pieces, best first.
+/// Merges the designs of all pieces and ranks them, best first.
 pub fn merge_ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     let mut designs = pieces.concat();
     rank(&mut designs);
     designs
 }
 
-/// The best design with these proportions, not yet scored; `None` if it cannot sweep as far as demanded, or has a
-/// link that is too short.
-pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
-    let d = proportions.scale_for_base(demands.base);
+/// Finds the best design with these proportions, without a score; `None` if its safe sweep is smaller than demanded,
+/// or if it has a link that is too short.
+pub fn find_design(proportions: Proportions, demands: &Demands) -> Option<Design> {
+    let d = proportions.scale_for_base(demands.base_mm);
     let bars = proportions.at_scale(d);
-    if bars.left_crank_length.min(bars.left_coupler_length) < demands.shortest {
+    if bars.left_crank_length.min(bars.left_coupler_length) < demands.min_link_mm {
         return None;
     }
     let (neutral, sweep) = (90..=170)
@@ -119,16 +119,16 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
             (neutral, largest_sweep(&bars, neutral, demands))
         })
         .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
-    if sweep < demands.sweep {
+    if sweep < demands.sweep_deg {
         return None;
     }
-    let (margin, lci) = margin_and_lci(&bars, neutral, demands.sweep);
+    let (margin, lci) = margin_and_lci(&bars, neutral, demands.sweep_deg);
     Some(Design {
         proportions,
         d,
         neutral,
         sweep,
-        stride: 2.0 * demands.leg * sweep.to_radians().sin(),
+        stride: 2.0 * demands.leg_crank_mm * sweep.to_radians().sin(),
         margin,
         lci,
         score: 0.0,
@@ -138,7 +138,7 @@ pub fn design(proportions: Proportions, demands: &Demands) -> Option<Design> {
 
 /// The largest sweep about a neutral angle within all limits, degrees.
 fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
-    let (mut safe_deg, mut unsafe_deg) = (0.0, demands.travel.min(89.9));
+    let (mut safe_deg, mut unsafe_deg) = (0.0, demands.travel_deg.min(89.9));
     if !meets_demands(bars, neutral, safe_deg, demands) {
         return 0.0;
     }
@@ -166,12 +166,12 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
             .forward(-rear - 90.0, front + 90.0)
             .map_or(f64::NAN, |pose| pose.d)
     };
-    let nominal = span_of(neutral, neutral);
-    SWEEP_SAMPLES.iter().all(|&i| {
-        let left = neutral + i * sweep;
-        SWEEP_SAMPLES.iter().all(|&j| {
-            let right = 180.0 - neutral + j * sweep;
-            let travel = span_of(left, neutral + j * sweep) - nominal;
+    let nominal_span = span_of(neutral, neutral);
+    SWEEP_SAMPLES.iter().all(|&left_fraction| {
+        let left = neutral + left_fraction * sweep;
+        SWEEP_SAMPLES.iter().all(|&right_fraction| {
+            let right = 180.0 - neutral + right_fraction * sweep;
+            let travel = span_of(left, neutral + right_fraction * sweep) - nominal_span;
             limits.violation_of(Check::StrokeLeft, travel).is_none()
                 && bars
                     .forward(left, right)
@@ -184,7 +184,7 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
 fn slider_of_side(bars: &FiveBar, demands: &Demands) -> Slider {
     Slider {
         front_offset: 0.0,
-        base: demands.chassis,
+        base: demands.chassis_length_mm,
         front_arm: bars.left_crank_length,
         rear_arm: bars.left_crank_length,
         nominal_length: 0.0,
@@ -195,11 +195,11 @@ fn slider_of_side(bars: &FiveBar, demands: &Demands) -> Slider {
 fn margin_and_lci(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
     let mut least_margin = f64::INFINITY;
     let mut lci_sum = 0.0;
-    for i in SWEEP_SAMPLES {
-        let left = neutral + i * sweep;
+    for left_fraction in SWEEP_SAMPLES {
+        let left = neutral + left_fraction * sweep;
         least_margin = least_margin.min(left.to_radians().sin());
-        for j in SWEEP_SAMPLES {
-            if let Ok(pose) = bars.forward(left, 180.0 - neutral + j * sweep) {
+        for right_fraction in SWEEP_SAMPLES {
+            if let Ok(pose) = bars.forward(left, 180.0 - neutral + right_fraction * sweep) {
                 least_margin = least_margin.min(pose.margin());
                 lci_sum += pose.lci();
             }

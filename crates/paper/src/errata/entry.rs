@@ -1,4 +1,4 @@
-//! The result for one printed equation, and its words.
+//! The result for one printed equation, and its wording.
 
 use std::fmt::Write as _;
 
@@ -19,8 +19,8 @@ pub struct Entry {
     pub unreal: f64,
     /// The unit of every error of this equation.
     pub unit: &'static str,
-    /// The largest error of the printed form in a special case, in `unit`, and the name of that case; null without
-    /// one.
+    /// The largest error of the printed form in a special case, in `unit`, and the name of that case; null if there is
+    /// no special case.
     pub aside: Option<(f64, &'static str)>,
     /// True if the printed form holds with right-hand angles measured clockwise from -x; null if
     /// the drawings do not suggest that reading.
@@ -46,12 +46,12 @@ impl Entry {
 
     /// The largest error in words, or `rounding` if the equation holds, followed by the error of the special case.
     pub fn format_error(&self) -> String {
-        let mut text = self.plain_miss();
-        if let Some((worst_error, place)) = self.aside {
+        let mut text = self.format_largest_error();
+        if let Some((worst_error, special_case)) = self.aside {
             let unit = self.unit;
             let _ = write!(
                 text,
-                "; {} {unit} at {place}",
+                "; {} {unit} at {special_case}",
                 format_three_digits(worst_error)
             );
         }
@@ -59,7 +59,7 @@ impl Entry {
     }
 
     /// The largest error in words, or `rounding` if the equation holds, without the special case.
-    fn plain_miss(&self) -> String {
+    fn format_largest_error(&self) -> String {
         if self.holds {
             return "rounding".to_string();
         }

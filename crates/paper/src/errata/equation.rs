@@ -12,11 +12,11 @@ pub struct Equation {
     /// The equation as printed.
     pub printed: &'static str,
     /// The error of the printed form.
-    pub miss: ErrorFn,
+    pub printed_error: ErrorFn,
     /// Unit of every error of this equation.
     pub unit: &'static str,
-    /// The error if right-hand angles are read clockwise from -x, where the paper's drawing
-    /// suggests it.
+    /// The error if right-hand angles are read clockwise from -x; `None` if the paper's drawing does not suggest this
+    /// reading.
     pub clockwise: Option<ErrorFn>,
     /// The corrected form, and its error.
     pub corrected: Option<(&'static str, ErrorFn)>,
@@ -25,17 +25,17 @@ pub struct Equation {
 }
 
 impl Equation {
-    /// Creates an equation without a correction; `miss` returns the error of the printed form in `unit`.
+    /// Creates an equation without a correction. `printed_error` returns the error of the printed form in `unit`.
     pub const fn new(
         place: &'static str,
         printed: &'static str,
         unit: &'static str,
-        miss: ErrorFn,
+        printed_error: ErrorFn,
     ) -> Self {
         Self {
             place,
             printed,
-            miss,
+            printed_error,
             unit,
             clockwise: None,
             corrected: None,
@@ -44,55 +44,59 @@ impl Equation {
     }
 
     /// Adds the error if right-hand angles are read clockwise from -x.
-    pub const fn clockwise(mut self, miss: ErrorFn) -> Self {
-        self.clockwise = Some(miss);
+    pub const fn clockwise(mut self, error_fn: ErrorFn) -> Self {
+        self.clockwise = Some(error_fn);
         self
     }
 
     /// Adds the corrected form and its error.
-    pub const fn corrected(mut self, form: &'static str, miss: ErrorFn) -> Self {
-        self.corrected = Some((form, miss));
+    pub const fn corrected(mut self, form: &'static str, error_fn: ErrorFn) -> Self {
+        self.corrected = Some((form, error_fn));
         self
     }
 
     /// Adds a special case, and the error of the printed form in that case.
-    pub const fn with_special_place(mut self, place: &'static str, miss: ErrorFn) -> Self {
-        self.special_case = Some((place, miss));
+    pub const fn with_special_case(
+        mut self,
+        special_case: &'static str,
+        error_fn: ErrorFn,
+    ) -> Self {
+        self.special_case = Some((special_case, error_fn));
         self
     }
 }
 
-/// The errors of a form over all samples.
+/// Statistics of a form's errors over all samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Misses {
+pub struct FormErrors {
     /// The largest error among samples with a real value.
-    pub worst: f64,
+    pub largest: f64,
     /// Share of the samples without a real value.
-    pub unreal: f64,
+    pub unreal_share: f64,
 }
 
-impl Misses {
-    /// Errors below this are rounding errors, in any unit.
+impl FormErrors {
+    /// Smaller errors are rounding errors, in any unit.
     const ROUNDING: f64 = 1e-6;
 
     /// Evaluates a form at all samples.
-    pub fn of(miss: ErrorFn, samples: &[Sample]) -> Self {
-        let mut worst = 0.0_f64;
+    pub fn of(error_fn: ErrorFn, samples: &[Sample]) -> Self {
+        let mut largest = 0.0_f64;
         let mut unreal_count = 0usize;
         for sample in samples {
-            match miss(sample) {
-                Some(value) if value.is_finite() => worst = worst.max(value),
+            match error_fn(sample) {
+                Some(value) if value.is_finite() => largest = largest.max(value),
                 _ => unreal_count += 1,
             }
         }
         Self {
-            worst,
-            unreal: unreal_count as f64 / samples.len().max(1) as f64,
+            largest,
+            unreal_share: unreal_count as f64 / samples.len().max(1) as f64,
         }
     }
 
     /// True if the form has a real value at every sample, and its errors are only from rounding.
     pub fn holds(&self) -> bool {
-        self.worst < Self::ROUNDING && self.unreal == 0.0
+        self.largest < Self::ROUNDING && self.unreal_share == 0.0
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use lizard_kinematics::{End, Links, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, angle_error, cis};
+use super::sample::{Sample, angle_error_deg, polar};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -14,23 +14,28 @@ pub const EQUATIONS: &[Equation] = &[
         "l1 cos θ1 + l2 cos θ2 - l3 cos θ3 - l4 cos θ4 - l0 = 0 (and sin)",
         "mm",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            let (links, theta) = (&sample.lizard.links, sample.theta());
             Some(loop_gap(
-                [(l.l1, t[1]), (l.l2, t[2]), (l.l3, t[3]), (l.l4, t[4])],
-                l.l0,
+                [
+                    (links.l1, theta[1]),
+                    (links.l2, theta[2]),
+                    (links.l3, theta[3]),
+                    (links.l4, theta[4]),
+                ],
+                links.l0,
             ))
         },
     )
     .clockwise(|sample| {
-        let (l, t) = (&sample.lizard.links, sample.angles().t);
+        let (links, theta) = (&sample.lizard.links, sample.theta());
         Some(loop_gap(
             [
-                (l.l1, t[1]),
-                (l.l2, t[2]),
-                (l.l3, PI - t[3]),
-                (l.l4, PI - t[4]),
+                (links.l1, theta[1]),
+                (links.l2, theta[2]),
+                (links.l3, PI - theta[3]),
+                (links.l4, PI - theta[4]),
             ],
-            l.l0,
+            links.l0,
         ))
     }),
     Equation::new(
@@ -38,10 +43,10 @@ pub const EQUATIONS: &[Equation] = &[
         "θ3 = 2 atan((-B - sqrt(B² - 4AC))/2A)",
         "deg",
         |sample| {
-            let (a, b, c) = abc_coefficients(sample, sample.angles().t[4]);
-            Some(angle_error(
+            let (a, b, c) = abc_coefficients(sample, sample.theta()[4]);
+            Some(angle_error_deg(
                 2.0 * half_angle_tangent(a, b, c, -1.0)?.atan(),
-                sample.angles().t[3],
+                sample.theta()[3],
             ))
         },
     )
@@ -51,7 +56,7 @@ pub const EQUATIONS: &[Equation] = &[
             let Some(vanishing_theta4) = theta4_of_vanishing_a(sample) else {
                 return Some(0.0);
             };
-            let theta1 = sample.s.pose.theta1;
+            let theta1 = sample.solution.pose.theta1;
             let Ok(pose) = sample
                 .lizard
                 .end(End::Head)
@@ -59,20 +64,20 @@ pub const EQUATIONS: &[Equation] = &[
             else {
                 return Some(0.0);
             };
-            let (l, rad_per_deg) = (&sample.lizard.links, PI / 180.0);
+            let (links, rad_per_deg) = (&sample.lizard.links, PI / 180.0);
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             Some(loop_gap(
                 [
-                    (l.l1, theta1 * rad_per_deg),
-                    (l.l2, theta2 * rad_per_deg),
-                    (l.l3, theta3 * rad_per_deg),
-                    (l.l4, vanishing_theta4),
+                    (links.l1, theta1 * rad_per_deg),
+                    (links.l2, theta2 * rad_per_deg),
+                    (links.l3, theta3 * rad_per_deg),
+                    (links.l4, vanishing_theta4),
                 ],
-                l.l0,
+                links.l0,
             ))
         },
     )
-    .with_special_place("θ4 within 1e-9° of A = 0", error_near_vanishing_a),
+    .with_special_case("θ4 within 1e-9° of A = 0", error_near_vanishing_a),
     Equation::new(
         "4.2 head, θ2",
         "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
@@ -81,7 +86,7 @@ pub const EQUATIONS: &[Equation] = &[
             let (d, e, f) = def_coefficients(sample, 1.0);
             let radicand = e * e + 4.0 * d * f;
             let tangent = (radicand >= 0.0).then(|| (-e + radicand.sqrt()) / (2.0 * d))?;
-            Some(angle_error(2.0 * tangent.atan(), sample.angles().t[2]))
+            Some(angle_error_deg(2.0 * tangent.atan(), sample.theta()[2]))
         },
     )
     .corrected(
@@ -90,7 +95,7 @@ pub const EQUATIONS: &[Equation] = &[
             let (d, e, f) = def_coefficients(sample, -1.0);
             let radicand = e * e - 4.0 * d * f;
             let tangent = (radicand >= 0.0).then(|| (e - radicand.sqrt()) / (2.0 * d))?;
-            Some(angle_error(2.0 * tangent.atan(), sample.angles().t[2]))
+            Some(angle_error_deg(2.0 * tangent.atan(), sample.theta()[2]))
         },
     ),
     Equation::new(
@@ -98,10 +103,15 @@ pub const EQUATIONS: &[Equation] = &[
         "R6 + R7 - R8 - R9 - R5 = 0",
         "mm",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            let (links, theta) = (&sample.lizard.links, sample.theta());
             Some(loop_gap(
-                [(l.l6, t[5]), (l.l7, t[6]), (l.l8, t[7]), (l.l9, t[8])],
-                l.l5,
+                [
+                    (links.l6, theta[5]),
+                    (links.l7, theta[6]),
+                    (links.l8, theta[7]),
+                    (links.l9, theta[8]),
+                ],
+                links.l5,
             ))
         },
     ),
@@ -110,15 +120,15 @@ pub const EQUATIONS: &[Equation] = &[
         "R11 + R12 - R13 - R14 - R10 = 0",
         "mm",
         |sample| {
-            let (l, t, half_travel) = (
+            let (links, theta, half_travel) = (
                 &sample.lizard.links,
-                sample.angles().t,
-                sample.s.left.s / 2.0,
+                sample.theta(),
+                sample.solution.left.s / 2.0,
             );
-            let sum = cis(l.l11, t[9]) + cis(l.l12 + half_travel, t[10])
-                - cis(l.l13 + half_travel, t[11])
-                - cis(l.l14, t[12])
-                - cis(l.l10, FRAC_PI_2);
+            let sum = polar(links.l11, theta[9]) + polar(links.l12 + half_travel, theta[10])
+                - polar(links.l13 + half_travel, theta[11])
+                - polar(links.l14, theta[12])
+                - polar(links.l10, FRAC_PI_2);
             Some(sum.length())
         },
     ),
@@ -127,15 +137,15 @@ pub const EQUATIONS: &[Equation] = &[
         "R16 + R17 - R18 - R19 - R15 = 0",
         "mm",
         |sample| {
-            let (l, t, half_travel) = (
+            let (links, theta, half_travel) = (
                 &sample.lizard.links,
-                sample.angles().t,
-                sample.s.right.s / 2.0,
+                sample.theta(),
+                sample.solution.right.s / 2.0,
             );
-            let sum = cis(l.l16, t[13]) + cis(l.l17 + half_travel, t[14])
-                - cis(l.l18 + half_travel, t[15])
-                - cis(l.l19, t[16])
-                - cis(l.l15, FRAC_PI_2);
+            let sum = polar(links.l16, theta[13]) + polar(links.l17 + half_travel, theta[14])
+                - polar(links.l18 + half_travel, theta[15])
+                - polar(links.l19, theta[16])
+                - polar(links.l15, FRAC_PI_2);
             Some(sum.length())
         },
     ),
@@ -144,107 +154,101 @@ pub const EQUATIONS: &[Equation] = &[
         "θ10 + θ11 = 0",
         "deg",
         |sample| {
-            Some(angle_error(
-                sample.angles().t[10] + sample.angles().t[11],
+            Some(angle_error_deg(
+                sample.theta()[10] + sample.theta()[11],
                 0.0,
             ))
         },
     )
     .clockwise(|sample| {
-        Some(angle_error(
-            sample.angles().t[10] + (PI - sample.angles().t[11]),
+        Some(angle_error_deg(
+            sample.theta()[10] + (PI - sample.theta()[11]),
             0.0,
         ))
     })
     .corrected("θ11 = θ10 + 180°", |sample| {
-        Some(angle_error(
-            sample.angles().t[11],
-            sample.angles().t[10] + PI,
-        ))
+        Some(angle_error_deg(sample.theta()[11], sample.theta()[10] + PI))
     }),
     Equation::new(
         "4.2 right slider halves",
         "θ14 + θ15 = 0",
         "deg",
         |sample| {
-            Some(angle_error(
-                sample.angles().t[14] + sample.angles().t[15],
+            Some(angle_error_deg(
+                sample.theta()[14] + sample.theta()[15],
                 0.0,
             ))
         },
     )
     .clockwise(|sample| {
-        Some(angle_error(
-            sample.angles().t[14] + (PI - sample.angles().t[15]),
+        Some(angle_error_deg(
+            sample.theta()[14] + (PI - sample.theta()[15]),
             0.0,
         ))
     })
     .corrected("θ15 = θ14 + 180°", |sample| {
-        Some(angle_error(
-            sample.angles().t[15],
-            sample.angles().t[14] + PI,
-        ))
+        Some(angle_error_deg(sample.theta()[15], sample.theta()[14] + PI))
     }),
     Equation::new("4.2 arm on A1", "θ1 - θ12 + C1 = 0", "deg", |sample| {
-        Some(angle_error(
-            sample.angles().t[1] + FRAC_PI_2,
-            sample.angles().t[12],
+        Some(angle_error_deg(
+            sample.theta()[1] + FRAC_PI_2,
+            sample.theta()[12],
         ))
     }),
     Equation::new("4.2 arm on A2", "θ4 - θ16 + C2 = 0", "deg", |sample| {
-        Some(angle_error(
-            sample.angles().t[4] + FRAC_PI_2,
-            sample.angles().t[16],
+        Some(angle_error_deg(
+            sample.theta()[4] + FRAC_PI_2,
+            sample.theta()[16],
         ))
     })
     .clockwise(|sample| {
-        Some(angle_error(
-            PI - sample.angles().t[4] + FRAC_PI_2,
-            PI - sample.angles().t[16],
+        Some(angle_error_deg(
+            PI - sample.theta()[4] + FRAC_PI_2,
+            PI - sample.theta()[16],
         ))
     })
     .corrected("θ16 = θ4 - C2", |sample| {
-        Some(angle_error(
-            sample.angles().t[4] - FRAC_PI_2,
-            sample.angles().t[16],
+        Some(angle_error_deg(
+            sample.theta()[4] - FRAC_PI_2,
+            sample.theta()[16],
         ))
     }),
     Equation::new("4.2 arm on A4", "θ9 - θ5 + C3 = 0", "deg", |sample| {
-        Some(angle_error(
-            sample.angles().t[9] + FRAC_PI_2,
-            sample.angles().t[5],
+        Some(angle_error_deg(
+            sample.theta()[9] + FRAC_PI_2,
+            sample.theta()[5],
         ))
     }),
     Equation::new("4.2 arm on A3", "θ13 - θ8 + C4 = 0", "deg", |sample| {
-        Some(angle_error(
-            sample.angles().t[13] + FRAC_PI_2,
-            sample.angles().t[8],
+        Some(angle_error_deg(
+            sample.theta()[13] + FRAC_PI_2,
+            sample.theta()[8],
         ))
     })
     .clockwise(|sample| {
-        Some(angle_error(
-            PI - sample.angles().t[13] + FRAC_PI_2,
-            PI - sample.angles().t[8],
+        Some(angle_error_deg(
+            PI - sample.theta()[13] + FRAC_PI_2,
+            PI - sample.theta()[8],
         ))
     })
     .corrected("θ13 = θ8 + C4", |sample| {
-        Some(angle_error(
-            sample.angles().t[13] - FRAC_PI_2,
-            sample.angles().t[8],
+        Some(angle_error_deg(
+            sample.theta()[13] - FRAC_PI_2,
+            sample.theta()[8],
         ))
     }),
 ];
 
 /// |first + second - third - fourth - base|, mm.
 fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
-    let [a, b, c, d] = links.map(|(length, angle)| cis(length, angle));
+    let [a, b, c, d] = links.map(|(length, angle)| polar(length, angle));
     (a + b - c - d - Vector::new(base, 0.0)).length()
 }
 
-/// Tangent of half an angle by the quadratic formula; `sign` selects the root. `None` if the roots are not real.
-fn half_angle_tangent(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
+/// Tangent of half an angle by the quadratic formula; `root_sign` selects the root. `None` if the roots are not real.
+fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
     let radicand = b * b - 4.0 * a * c;
-    (radicand >= 0.0).then(|| (-b + sign * radicand.sqrt()) / (2.0 * a))
+    (radicand >= 0.0).then(|| (-b + root_sign * radicand.sqrt()) / (2.0 * a))
 }
 
 /// The coefficients A, B, C as printed, at this theta4 (rad) and the sample's theta1.
@@ -253,7 +257,7 @@ fn abc_coefficients(sample: &Sample, theta4: f64) -> (f64, f64, f64) {
         l0, l1, l2, l3, l4, ..
     } = sample.lizard.links;
     // Not through `angles`, which takes arc tangents that are not needed here.
-    let theta1 = sample.s.pose.theta1 * PI / 180.0;
+    let theta1 = sample.solution.pose.theta1 * PI / 180.0;
     let k1 = l4 * theta4.sin() - l1 * theta1.sin();
     let k2 = l4 * theta4.cos() - l1 * theta1.cos() + l0;
     let common = l3 * l3 - l2 * l2 + k2 * k2 + k1 * k1;
@@ -269,9 +273,9 @@ fn def_coefficients(sample: &Sample, base_sign: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
     } = sample.lizard.links;
-    let t = sample.angles().t;
-    let k3 = -l4 * t[4].sin() + l1 * t[1].sin();
-    let k4 = -l4 * t[4].cos() + l1 * t[1].cos() + base_sign * l0;
+    let theta = sample.theta();
+    let k3 = -l4 * theta[4].sin() + l1 * theta[1].sin();
+    let k4 = -l4 * theta[4].cos() + l1 * theta[1].cos() + base_sign * l0;
     let common = l3 * l3 - l2 * l2 - k4 * k4 - k3 * k3;
     (
         (common + 2.0 * k4 * l2) / 2.0,
@@ -307,13 +311,13 @@ fn error_near_vanishing_a(sample: &Sample) -> Option<f64> {
     let Ok(exact_pose) = sample
         .lizard
         .end(End::Head)
-        .forward(sample.s.pose.theta1, theta4 * 180.0 / PI)
+        .forward(sample.solution.pose.theta1, theta4 * 180.0 / PI)
     else {
         return Some(0.0);
     };
     let (a, b, c) = abc_coefficients(sample, theta4);
     let printed_theta3 = 2.0 * half_angle_tangent(a, b, c, -1.0)?.atan();
-    Some(angle_error(
+    Some(angle_error_deg(
         printed_theta3,
         exact_pose.theta_right_coupler() * PI / 180.0,
     ))

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use lizard_kinematics::{End, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, cis};
+use super::sample::{Sample, polar};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -14,13 +14,13 @@ pub const EQUATIONS: &[Equation] = &[
         "(x11 - l1 cos θ1 + l0/2)² + (y11 - l1 sin θ1)² = l2²",
         "mm in length",
         |sample| {
-            let l = &sample.lizard.links;
+            let links = &sample.lizard.links;
             arm_error(
-                sample.s.head.end_point,
-                -l.l0 / 2.0,
-                l.l1,
-                sample.angles().t[1],
-                l.l2,
+                sample.solution.head.end_point,
+                -links.l0 / 2.0,
+                links.l1,
+                sample.theta()[1],
+                links.l2,
             )
         },
     ),
@@ -29,26 +29,26 @@ pub const EQUATIONS: &[Equation] = &[
         "(x11 - l1 cos θ2 - l0/2)² + (y11 - l1 sin θ2)² = l2²",
         "mm in length",
         |sample| {
-            let l = &sample.lizard.links;
+            let links = &sample.lizard.links;
             arm_error(
-                sample.s.head.end_point,
-                l.l0 / 2.0,
-                l.l1,
-                sample.angles().t[2],
-                l.l2,
+                sample.solution.head.end_point,
+                links.l0 / 2.0,
+                links.l1,
+                sample.theta()[2],
+                links.l2,
             )
         },
     )
     .corrected(
         "(x11 - l4 cos θ4 - l0/2)² + (y11 - l4 sin θ4)² = l3²",
         |sample| {
-            let l = &sample.lizard.links;
+            let links = &sample.lizard.links;
             arm_error(
-                sample.s.head.end_point,
-                l.l0 / 2.0,
-                l.l4,
-                sample.angles().t[4],
-                l.l3,
+                sample.solution.head.end_point,
+                links.l0 / 2.0,
+                links.l4,
+                sample.theta()[4],
+                links.l3,
             )
         },
     ),
@@ -57,26 +57,26 @@ pub const EQUATIONS: &[Equation] = &[
         "(x21 - l9 cos θ8 + l5/2)² + (y21 - l9 sin θ8)² = l8²",
         "mm in length",
         |sample| {
-            let l = &sample.lizard.links;
+            let links = &sample.lizard.links;
             arm_error(
                 tail_point(sample),
-                -l.l5 / 2.0,
-                l.l9,
-                sample.angles().t[8],
-                l.l8,
+                -links.l5 / 2.0,
+                links.l9,
+                sample.theta()[8],
+                links.l8,
             )
         },
     )
     .corrected(
         "the same in a frame turned by 180°: x21, y21 negated, θ8 - 180°",
         |sample| {
-            let l = &sample.lizard.links;
+            let links = &sample.lizard.links;
             arm_error(
                 -tail_point(sample),
-                -l.l5 / 2.0,
-                l.l9,
-                sample.angles().t[8] - PI,
-                l.l8,
+                -links.l5 / 2.0,
+                links.l9,
+                sample.theta()[8] - PI,
+                links.l8,
             )
         },
     ),
@@ -85,26 +85,26 @@ pub const EQUATIONS: &[Equation] = &[
         "(x21 - l9 cos θ7 - l5/2)² + (y21 - l9 sin θ7)² = l8²",
         "mm in length",
         |sample| {
-            let l = &sample.lizard.links;
+            let links = &sample.lizard.links;
             arm_error(
                 tail_point(sample),
-                l.l5 / 2.0,
-                l.l9,
-                sample.angles().t[7],
-                l.l8,
+                links.l5 / 2.0,
+                links.l9,
+                sample.theta()[7],
+                links.l8,
             )
         },
     )
     .corrected(
         "in the turned frame (x21 - l6 cos θ5 - l5/2)² + (y21 - l6 sin θ5)² = l7²",
         |sample| {
-            let l = &sample.lizard.links;
+            let links = &sample.lizard.links;
             arm_error(
                 -tail_point(sample),
-                l.l5 / 2.0,
-                l.l6,
-                sample.angles().t[5] - PI,
-                l.l7,
+                links.l5 / 2.0,
+                links.l6,
+                sample.theta()[5] - PI,
+                links.l7,
             )
         },
     ),
@@ -113,17 +113,23 @@ pub const EQUATIONS: &[Equation] = &[
         "2 x31 = l13 cos θ11 + l14 cos θ12 (y31: sin)",
         "mm",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            let (links, theta) = (&sample.lizard.links, sample.theta());
             Some(
-                (slider_middle(sample, 0) - (cis(l.l13, t[11]) + cis(l.l14, t[12])) * 0.5).length(),
+                (slider_middle(sample, 0)
+                    - (polar(links.l13, theta[11]) + polar(links.l14, theta[12])) * 0.5)
+                    .length(),
             )
         },
     )
     .corrected(
         "2 x31 = l11 cos θ9 + l14 cos θ12, from the middle of l10",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
-            Some((slider_middle(sample, 0) - (cis(l.l11, t[9]) + cis(l.l14, t[12])) * 0.5).length())
+            let (links, theta) = (&sample.lizard.links, sample.theta());
+            Some(
+                (slider_middle(sample, 0)
+                    - (polar(links.l11, theta[9]) + polar(links.l14, theta[12])) * 0.5)
+                    .length(),
+            )
         },
     ),
     Equation::new(
@@ -131,18 +137,22 @@ pub const EQUATIONS: &[Equation] = &[
         "2 x41 = l19 cos θ16 + l18 cos θ15 (y41: sin)",
         "mm",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            let (links, theta) = (&sample.lizard.links, sample.theta());
             Some(
-                (slider_middle(sample, 1) - (cis(l.l19, t[16]) + cis(l.l18, t[15])) * 0.5).length(),
+                (slider_middle(sample, 1)
+                    - (polar(links.l19, theta[16]) + polar(links.l18, theta[15])) * 0.5)
+                    .length(),
             )
         },
     )
     .corrected(
         "2 x41 = l16 cos θ13 + l19 cos θ16, from the middle of l15",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
+            let (links, theta) = (&sample.lizard.links, sample.theta());
             Some(
-                (slider_middle(sample, 1) - (cis(l.l16, t[13]) + cis(l.l19, t[16])) * 0.5).length(),
+                (slider_middle(sample, 1)
+                    - (polar(links.l16, theta[13]) + polar(links.l19, theta[16])) * 0.5)
+                    .length(),
             )
         },
     ),
@@ -150,17 +160,17 @@ pub const EQUATIONS: &[Equation] = &[
 
 /// The difference between a coupler's length and the distance from its crank's tip to a point.
 fn arm_error(point: Vector, shaft_x: f64, crank: f64, angle: f64, coupler: f64) -> Option<f64> {
-    let tip = Vector::new(shaft_x, 0.0) + cis(crank, angle);
+    let tip = Vector::new(shaft_x, 0.0) + polar(crank, angle);
     Some(((point - tip).length() - coupler).abs())
 }
 
 /// The tail point relative to the middle of l5, in chassis axes.
 fn tail_point(sample: &Sample) -> Vector {
-    End::Tail.mirror(sample.s.tail.end_point)
+    End::Tail.mirror(sample.solution.tail.end_point)
 }
 
 /// The middle of a slider relative to the middle between its shafts: 0 left, 1 right.
 fn slider_middle(sample: &Sample, side: usize) -> Vector {
-    let slider = [&sample.s.left, &sample.s.right][side];
+    let slider = [&sample.solution.left, &sample.solution.right][side];
     (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5
 }

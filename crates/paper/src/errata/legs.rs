@@ -3,7 +3,7 @@
 use lizard_kinematics::{Leg, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, angle_error, cis};
+use super::sample::{Sample, angle_error_deg, polar};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -13,9 +13,9 @@ pub const EQUATIONS: &[Equation] = &[
         "mm; LG20, LG30, LG40 are meant",
         |sample| {
             let leg = &sample.lizard.leg;
-            worst_of(sample, ALL_LEGS, |theta| {
-                let sum = cis(leg.crank, theta) + Vector::new(leg.coupler - leg.ground, 0.0)
-                    - cis(leg.follower, theta);
+            largest_error(sample, ALL_LEGS, |theta| {
+                let sum = polar(leg.crank, theta) + Vector::new(leg.coupler - leg.ground, 0.0)
+                    - polar(leg.follower, theta);
                 Some(sum.length())
             })
         },
@@ -40,7 +40,7 @@ pub const EQUATIONS: &[Equation] = &[
         "H = -2 sin θ1",
         "deg in θ_lg13, root already corrected",
         |sample| {
-            let h = Some(-2.0 * sample.angles().t[1].sin());
+            let h = Some(-2.0 * sample.theta()[1].sin());
             let front = follower_error(sample, &[4], -1.0, h);
             let back = follower_error(sample, BACK_LEGS, 1.0, h);
             Some(front?.max(back?))
@@ -78,23 +78,27 @@ const BACK_LEGS: &[usize] = &[8, 5];
 /// The paper's numbers of the angles that drive all legs.
 const ALL_LEGS: &[usize] = &[1, 4, 8, 5];
 
-/// The largest error over these legs; `None` if there is no real value for one of them.
-fn worst_of(sample: &Sample, legs: &[usize], error_of: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+/// The largest error over these legs; `None` if a leg has no real value.
+fn largest_error(
+    sample: &Sample,
+    legs: &[usize],
+    error_of: impl Fn(f64) -> Option<f64>,
+) -> Option<f64> {
     legs.iter()
-        .map(|&leg| error_of(sample.angles().t[leg]))
+        .map(|&leg| error_of(sample.theta()[leg]))
         .try_fold(0.0, |worst: f64, value| Some(worst.max(value?)))
 }
 
-/// The error of the follower's angle by G, H, I as printed, or with another H; `sign` selects the root. In a
-/// parallelogram the follower has the angle of the crank.
-fn follower_error(sample: &Sample, legs: &[usize], sign: f64, h: Option<f64>) -> Option<f64> {
+/// The error of the follower's angle by G, H, I as printed, or with another H. `root_sign` selects the root. In a
+/// parallelogram the follower has the same angle as the crank.
+fn follower_error(sample: &Sample, legs: &[usize], root_sign: f64, h: Option<f64>) -> Option<f64> {
     let Leg {
         ground,
         crank,
         coupler,
         follower,
     } = sample.lizard.leg;
-    worst_of(sample, legs, |theta| {
+    largest_error(sample, legs, |theta| {
         let cos_theta = theta.cos();
         let constant_term = (crank * crank + follower * follower + ground * ground
             - coupler * coupler)
@@ -102,23 +106,23 @@ fn follower_error(sample: &Sample, legs: &[usize], sign: f64, h: Option<f64>) ->
         let g = cos_theta - ground / crank - ground * cos_theta / follower + constant_term;
         let h = h.unwrap_or(-2.0 * theta.sin());
         let i = ground / crank - (ground / follower + 1.0) * cos_theta + constant_term;
-        Some(angle_error(
-            2.0 * half_angle_tangent(g, h, i, sign)?.atan(),
+        Some(angle_error_deg(
+            2.0 * half_angle_tangent(g, h, i, root_sign)?.atan(),
             theta,
         ))
     })
 }
 
-/// The error of the coupler's angle by J, K, L; in a parallelogram this angle is 0. `term_sign` is the sign of the
-/// terms in lg12, -1 as printed and +1 as corrected; `sign` selects the root.
-fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> Option<f64> {
+/// The error of the coupler's angle by J, K, L. In a parallelogram this angle is 0. `term_sign` is the sign of the
+/// terms in lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
+fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64) -> Option<f64> {
     let Leg {
         ground,
         crank,
         coupler,
         follower,
     } = sample.lizard.leg;
-    worst_of(sample, legs, |theta| {
+    largest_error(sample, legs, |theta| {
         let cos_theta = theta.cos();
         let constant_term =
             (follower * follower - ground * ground - crank * crank - coupler * coupler)
@@ -127,16 +131,16 @@ fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, sign: f64) -> 
             cos_theta - ground / crank + term_sign * ground * cos_theta / coupler + constant_term;
         let k = -2.0 * theta.sin();
         let l = ground / crank + (term_sign * ground / coupler - 1.0) * cos_theta + constant_term;
-        Some(angle_error(
-            2.0 * half_angle_tangent(j, k, l, sign)?.atan(),
+        Some(angle_error_deg(
+            2.0 * half_angle_tangent(j, k, l, root_sign)?.atan(),
             0.0,
         ))
     })
 }
 
-/// Tangent of half an angle by the quadratic formula; `sign` selects the root. `None` if the roots are not real.
+/// Tangent of half an angle by the quadratic formula; `root_sign` selects the root. `None` if the roots are not real.
 /// Rounding may make a radicand of zero slightly negative.
-fn half_angle_tangent(a: f64, b: f64, c: f64, sign: f64) -> Option<f64> {
+fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
     let radicand = b * b - 4.0 * a * c;
-    (radicand > -1e-12).then(|| (-b + sign * radicand.max(0.0).sqrt()) / (2.0 * a))
+    (radicand > -1e-12).then(|| (-b + root_sign * radicand.max(0.0).sqrt()) / (2.0 * a))
 }

@@ -1,5 +1,5 @@
-//! Every equation of the paper compared with the geometric solution. Only the equations are typed in; all else is
-//! computed.
+//! Every equation of the paper, compared with the geometric solution. Only the equations are typed in; everything else
+//! is computed.
 
 mod entry;
 mod equation;
@@ -13,14 +13,14 @@ mod table;
 
 use rayon::prelude::*;
 
-use equation::{Equation, Misses};
+use equation::{Equation, FormErrors};
 use sample::Sample;
 
 pub use entry::Entry;
-pub use table::{markdown, text};
+pub use table::{format_markdown, format_text};
 
 /// Number of random poses behind docs/errata.md.
-pub const SAMPLES: u32 = 20_000;
+pub const SAMPLE_COUNT: u32 = 20_000;
 
 /// The paper's equations, in its order.
 fn equations() -> Vec<&'static Equation> {
@@ -41,32 +41,32 @@ pub fn equation_count() -> usize {
     equations().len()
 }
 
-/// Measures every equation, in the paper's order, at `samples` random poses, on all cores. `progress` is called once
-/// for each.
-pub fn measure(samples: u32, progress: &(dyn Fn() + Sync)) -> Vec<Entry> {
-    let samples: Vec<Sample> = Sample::many(samples as usize).collect();
+/// Measures every equation at `sample_count` random poses, on all cores. The results are in the paper's order.
+/// `progress` is called after each equation.
+pub fn measure(sample_count: u32, progress: &(dyn Fn() + Sync)) -> Vec<Entry> {
+    let samples: Vec<Sample> = Sample::generate(sample_count as usize).collect();
     let measure_one = |equation: &Equation| {
-        let printed = Misses::of(equation.miss, &samples);
+        let printed = FormErrors::of(equation.printed_error, &samples);
         let corrected = equation
             .corrected
-            .map(|(_, miss)| Misses::of(miss, &samples));
+            .map(|(_, error_fn)| FormErrors::of(error_fn, &samples));
         progress();
         Entry {
             place: equation.place,
             printed: equation.printed,
             holds: printed.holds(),
-            worst: printed.worst,
-            unreal: printed.unreal,
+            worst: printed.largest,
+            unreal: printed.unreal_share,
             unit: equation.unit,
             aside: equation
                 .special_case
-                .map(|(place, miss)| (Misses::of(miss, &samples).worst, place)),
+                .map(|(name, error_fn)| (FormErrors::of(error_fn, &samples).largest, name)),
             holds_clockwise: equation
                 .clockwise
-                .map(|miss| Misses::of(miss, &samples).holds()),
+                .map(|error_fn| FormErrors::of(error_fn, &samples).holds()),
             corrected: equation.corrected.map(|(form, _)| form),
-            corrected_worst: corrected.map(|misses| misses.worst),
-            corrected_holds: corrected.map(|misses| misses.holds()),
+            corrected_worst: corrected.map(|errors| errors.largest),
+            corrected_holds: corrected.map(|errors| errors.holds()),
         }
     };
     equations().into_par_iter().map(measure_one).collect()

@@ -13,10 +13,10 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 shape of K",
         "K is 8x8, its determinant must not vanish",
         "columns more than servos",
-        |sample| Some(8.0 - sample.s.active_matrix()[0].len() as f64),
+        |sample| Some(8.0 - sample.solution.active_matrix()[0].len() as f64),
     )
     .corrected("K is 8x4: four active rates, no determinant", |sample| {
-        Some(4.0 - sample.s.active_matrix()[0].len() as f64)
+        Some(4.0 - sample.solution.active_matrix()[0].len() as f64)
     }),
     Equation::new(
         "5.1 K, head",
@@ -43,8 +43,13 @@ pub const EQUATIONS: &[Equation] = &[
         "[l11 sin(C3 - θ5), -l14 sin(C1 + θ1); l11 cos(C3 - θ5), -l14 cos(C1 + θ1)]",
         "mm/rad",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
-            let block = side_block([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], -1.0);
+            let (links, theta) = (&sample.lizard.links, sample.theta());
+            let block = side_block(
+                [links.l11, links.l14],
+                FRAC_PI_2 - theta[5],
+                FRAC_PI_2 + theta[1],
+                -1.0,
+            );
             Some(largest_difference(
                 &active_block(sample, 4, 3, 0).map(|v| -v),
                 &block,
@@ -52,8 +57,13 @@ pub const EQUATIONS: &[Equation] = &[
         },
     )
     .corrected("+l14 sin(C1 + θ1)", |sample| {
-        let (l, t) = (&sample.lizard.links, sample.angles().t);
-        let block = side_block([l.l11, l.l14], FRAC_PI_2 - t[5], FRAC_PI_2 + t[1], 1.0);
+        let (links, theta) = (&sample.lizard.links, sample.theta());
+        let block = side_block(
+            [links.l11, links.l14],
+            FRAC_PI_2 - theta[5],
+            FRAC_PI_2 + theta[1],
+            1.0,
+        );
         Some(largest_difference(
             &active_block(sample, 4, 3, 0).map(|v| -v),
             &block,
@@ -64,8 +74,13 @@ pub const EQUATIONS: &[Equation] = &[
         "[l16 sin(C4 - θ8), -l19 sin(C2 + θ4); l16 cos(C4 - θ8), -l19 cos(C2 + θ4)]",
         "mm/rad",
         |sample| {
-            let (l, t) = (&sample.lizard.links, sample.angles().t);
-            let block = side_block([l.l16, l.l19], FRAC_PI_2 - t[8], FRAC_PI_2 + t[4], -1.0);
+            let (links, theta) = (&sample.lizard.links, sample.theta());
+            let block = side_block(
+                [links.l16, links.l19],
+                FRAC_PI_2 - theta[8],
+                FRAC_PI_2 + theta[4],
+                -1.0,
+            );
             Some(largest_difference(
                 &active_block(sample, 6, 2, 1).map(|v| -v),
                 &block,
@@ -73,8 +88,13 @@ pub const EQUATIONS: &[Equation] = &[
         },
     )
     .corrected("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |sample| {
-        let (l, t) = (&sample.lizard.links, sample.angles().t);
-        let block = side_block([l.l16, l.l19], -FRAC_PI_2 - t[8], -FRAC_PI_2 + t[4], 1.0);
+        let (links, theta) = (&sample.lizard.links, sample.theta());
+        let block = side_block(
+            [links.l16, links.l19],
+            -FRAC_PI_2 - theta[8],
+            -FRAC_PI_2 + theta[4],
+            1.0,
+        );
         Some(largest_difference(
             &active_block(sample, 6, 2, 1).map(|v| -v),
             &block,
@@ -84,31 +104,32 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 K*, head",
         "[-l2 sin θ2, -l3 sin θ3; l2 cos θ2, -l3 cos θ3]",
         "mm/rad",
-        |sample| PASSIVE_HEAD.printed_error(sample),
+        |sample| K_STAR_HEAD.printed_error(sample),
     )
-    .clockwise(|sample| PASSIVE_HEAD.clockwise_error(sample))
+    .clockwise(|sample| K_STAR_HEAD.clockwise_error(sample))
     .corrected("second column +l3 sin θ3, -l3 cos θ3", |sample| {
-        PASSIVE_HEAD.corrected_error(sample)
+        K_STAR_HEAD.corrected_error(sample)
     }),
     Equation::new(
         "5.1 K*, tail",
         "[-l7 sin θ6, -l8 sin θ7; l7 cos θ6, -l8 cos θ7]",
         "mm/rad",
-        |sample| PASSIVE_TAIL.printed_error(sample),
+        |sample| K_STAR_TAIL.printed_error(sample),
     )
-    .clockwise(|sample| PASSIVE_TAIL.clockwise_error(sample))
+    .clockwise(|sample| K_STAR_TAIL.clockwise_error(sample))
     .corrected("second column +l8 sin θ7, -l8 cos θ7", |sample| {
-        PASSIVE_TAIL.corrected_error(sample)
+        K_STAR_TAIL.corrected_error(sample)
     }),
     Equation::new(
         "5.1 determinant of the printed K*",
         "l2 l3 l7 l8 l12 l13 l17 l18 sin 2θ11 sin 2θ14 (cos(θ2+θ3-θ6-θ7) - cos(θ2+θ3+θ6+θ7))/2",
         "per product of lengths; it follows from the printed matrix",
         |sample| {
-            let t = sample.angles().t;
-            let product = (t[2] + t[3]).sin() * (t[6] + t[7]).sin();
-            let printed =
-                ((t[2] + t[3] - t[6] - t[7]).cos() - (t[2] + t[3] + t[6] + t[7]).cos()) / 2.0;
+            let theta = sample.theta();
+            let product = (theta[2] + theta[3]).sin() * (theta[6] + theta[7]).sin();
+            let printed = ((theta[2] + theta[3] - theta[6] - theta[7]).cos()
+                - (theta[2] + theta[3] + theta[6] + theta[7]).cos())
+                / 2.0;
             Some((product - printed).abs())
         },
     ),
@@ -117,20 +138,23 @@ pub const EQUATIONS: &[Equation] = &[
         "sin(θ2 + θ3) = 0",
         "in the sine",
         |sample| {
-            let t = sample.angles().t;
-            Some(((t[2] + t[3]).sin().abs() - sample.s.margins.type2[0]).abs())
+            let theta = sample.theta();
+            Some(((theta[2] + theta[3]).sin().abs() - sample.solution.margins.type2[0]).abs())
         },
     )
     .clockwise(|sample| {
-        let t = sample.angles().t;
-        Some(((t[2] + PI - t[3]).sin().abs() - sample.s.margins.type2[0]).abs())
+        let theta = sample.theta();
+        Some(((theta[2] + PI - theta[3]).sin().abs() - sample.solution.margins.type2[0]).abs())
     })
     .corrected("sin(θ3 - θ2) = 0", |sample| {
-        let t = sample.angles().t;
+        let theta = sample.theta();
         // l2 l3 = 2500 mm^2.
-        Some(((t[3] - t[2]).sin() - determinant_sine(&passive_block(sample, 0), 2500.0)).abs())
+        Some(
+            ((theta[3] - theta[2]).sin() - determinant_sine(&passive_block(sample, 0), 2500.0))
+                .abs(),
+        )
     })
-    .with_special_place("the neutral pose, which it flags", |sample| {
+    .with_special_case("the neutral pose, which it flags", |sample| {
         let (neutral_margin, sum) = neutral_margin_and_sum(sample)?;
         Some((sum.sin().abs() - neutral_margin).abs())
     }),
@@ -139,61 +163,64 @@ pub const EQUATIONS: &[Equation] = &[
         "sin(θ6 + θ7) = 0",
         "in the sine",
         |sample| {
-            let t = sample.angles().t;
-            Some(((t[6] + t[7]).sin().abs() - sample.s.margins.type2[1]).abs())
+            let theta = sample.theta();
+            Some(((theta[6] + theta[7]).sin().abs() - sample.solution.margins.type2[1]).abs())
         },
     )
     .clockwise(|sample| {
-        let t = sample.angles().t;
-        Some(((t[6] + PI - t[7]).sin().abs() - sample.s.margins.type2[1]).abs())
+        let theta = sample.theta();
+        Some(((theta[6] + PI - theta[7]).sin().abs() - sample.solution.margins.type2[1]).abs())
     })
     .corrected("sin(θ7 - θ6) = 0", |sample| {
-        let t = sample.angles().t;
+        let theta = sample.theta();
         // l7 l8 = 2500 mm^2.
-        Some(((t[7] - t[6]).sin() - determinant_sine(&passive_block(sample, 2), 2500.0)).abs())
+        Some(
+            ((theta[7] - theta[6]).sin() - determinant_sine(&passive_block(sample, 2), 2500.0))
+                .abs(),
+        )
     }),
     Equation::new(
         "5.1 singular left side",
         "sin 2θ11 = 0",
         "in the sine, of a block that is never singular",
-        |sample| Some(1.0 - (2.0 * sample.angles().t[11]).sin().abs()),
+        |sample| Some(1.0 - (2.0 * sample.theta()[11]).sin().abs()),
     )
     .corrected("never: the block's determinant is -d", |sample| {
         let [a, b, c, d] = passive_block(sample, 4);
-        Some((a * d - b * c + sample.s.left.d).abs())
+        Some((a * d - b * c + sample.solution.left.d).abs())
     }),
     Equation::new(
         "5.1 singular right side",
         "sin 2θ14 = 0",
         "in the sine, of a block that is never singular",
-        |sample| Some(1.0 - (2.0 * sample.angles().t[14]).sin().abs()),
+        |sample| Some(1.0 - (2.0 * sample.theta()[14]).sin().abs()),
     )
     .corrected("never: the block's determinant is -d", |sample| {
         let [a, b, c, d] = passive_block(sample, 6);
-        Some((a * d - b * c + sample.s.right.d).abs())
+        Some((a * d - b * c + sample.solution.right.d).abs())
     }),
     Equation::new(
         "5.2 shape of the leg's K",
         "K is 2x2 and holds θ_lg12, which is passive",
         "columns more than drives",
-        |sample| Some(2.0 - mobility_of_leg(sample)),
+        |sample| Some(2.0 - leg_freedom_count(sample)),
     )
     .corrected("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |sample| {
-        Some(1.0 - mobility_of_leg(sample))
+        Some(1.0 - leg_freedom_count(sample))
     }),
     Equation::new(
         "5.2 singular leg",
         "-lg12 lg13 sin(θ_lg1 + θ_lg12 - θ_lg13) = 0",
         "in the sine",
         |sample| {
-            let theta = sample.angles().t[1];
+            let theta = sample.theta()[1];
             Some(((theta + 0.0 - theta).sin().abs() - theta.sin().abs()).abs())
         },
     )
     .corrected(
         "lg12 lg13 sin(θ_lg12 - θ_lg13) = 0, so sin θ_lg1 = 0",
         |sample| {
-            let (leg, theta) = (&sample.lizard.leg, sample.angles().t[1]);
+            let (leg, theta) = (&sample.lizard.leg, sample.theta()[1]);
             // The columns for θ_lg12 = 0 and θ_lg13 = θ_lg1.
             let columns = [
                 0.0,
@@ -201,16 +228,16 @@ pub const EQUATIONS: &[Equation] = &[
                 leg.coupler,
                 -leg.follower * theta.cos(),
             ];
-            let truth = (0.0 - theta).sin();
-            Some((-determinant_sine(&columns, leg.coupler * leg.follower) - truth).abs())
+            let true_sine = (0.0 - theta).sin();
+            Some((-determinant_sine(&columns, leg.coupler * leg.follower) - true_sine).abs())
         },
     ),
 ];
 
 /// theta1 in the neutral pose, where every slider has its nominal length, degrees.
 fn neutral_theta1(sample: &Sample) -> f64 {
-    let l = &sample.lizard.links;
-    ((l.l12 + l.l13 - l.l10) / (l.l11 + l.l14))
+    let links = &sample.lizard.links;
+    ((links.l12 + links.l13 - links.l10) / (links.l11 + links.l14))
         .acos()
         .to_degrees()
 }
@@ -230,30 +257,30 @@ fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
 /// The 2x2 block of K or K* for the left and the right bar of the head or the tail.
 struct Block {
     /// Computes the true block, by rows.
-    truth: fn(&Sample) -> [f64; 4],
-    /// The indices of the left and the right bar's angles in the paper.
+    true_block: fn(&Sample) -> [f64; 4],
+    /// The paper's numbers of the left and the right bar's angles, 1 for theta1.
     angles: [usize; 2],
-    /// The indices of the left and the right bar's lengths, 1 for l1.
+    /// The paper's numbers of the left and the right bar's lengths, 1 for l1.
     bars: [usize; 2],
 }
 
 const K_HEAD: Block = Block {
-    truth: |sample| active_block(sample, 0, 0, 1),
+    true_block: |sample| active_block(sample, 0, 0, 1),
     angles: [1, 4],
     bars: [1, 4],
 };
 const K_TAIL: Block = Block {
-    truth: |sample| active_block(sample, 2, 3, 2),
+    true_block: |sample| active_block(sample, 2, 3, 2),
     angles: [5, 8],
     bars: [6, 9],
 };
-const PASSIVE_HEAD: Block = Block {
-    truth: |sample| passive_block(sample, 0),
+const K_STAR_HEAD: Block = Block {
+    true_block: |sample| passive_block(sample, 0),
     angles: [2, 3],
     bars: [2, 3],
 };
-const PASSIVE_TAIL: Block = Block {
-    truth: |sample| passive_block(sample, 2),
+const K_STAR_TAIL: Block = Block {
+    true_block: |sample| passive_block(sample, 2),
     angles: [6, 7],
     bars: [7, 8],
 };
@@ -261,18 +288,18 @@ const PASSIVE_TAIL: Block = Block {
 impl Block {
     /// The largest error of the printed block.
     fn printed_error(&self, sample: &Sample) -> Option<f64> {
-        let right_theta = sample.angles().t[self.angles[1]];
+        let right_theta = sample.theta()[self.angles[1]];
         Some(largest_difference(
-            &(self.truth)(sample),
+            &(self.true_block)(sample),
             &self.block_with(sample, right_theta, -1.0),
         ))
     }
 
-    /// The largest error of the printed block if the right bar's angle is measured clockwise from
-    /// -x. That reverses the sign of the derivative by this angle.
+    /// The largest error of the printed block if the right bar's angle is measured clockwise from -x. Then the
+    /// derivative with respect to this angle has the opposite sign.
     fn clockwise_error(&self, sample: &Sample) -> Option<f64> {
-        let [a, b, c, d] = (self.truth)(sample);
-        let right_theta = PI - sample.angles().t[self.angles[1]];
+        let [a, b, c, d] = (self.true_block)(sample);
+        let right_theta = PI - sample.theta()[self.angles[1]];
         Some(largest_difference(
             &[a, -b, c, -d],
             &self.block_with(sample, right_theta, -1.0),
@@ -281,29 +308,29 @@ impl Block {
 
     /// The largest error of the corrected block.
     fn corrected_error(&self, sample: &Sample) -> Option<f64> {
-        let right_theta = sample.angles().t[self.angles[1]];
+        let right_theta = sample.theta()[self.angles[1]];
         Some(largest_difference(
-            &(self.truth)(sample),
+            &(self.true_block)(sample),
             &self.block_with(sample, right_theta, 1.0),
         ))
     }
 
     /// The block in the paper's form, with the right bar's angle (rad) and the sign of its sine.
     fn block_with(&self, sample: &Sample, right_theta: f64, sign: f64) -> [f64; 4] {
-        let l = sample.lizard.links.to_array();
-        let ([left_bar, right_bar], left_theta) = (self.bars, sample.angles().t[self.angles[0]]);
+        let lengths = sample.lizard.links.to_array();
+        let ([left_bar, right_bar], left_theta) = (self.bars, sample.theta()[self.angles[0]]);
         [
-            -l[left_bar] * left_theta.sin(),
-            sign * l[right_bar] * right_theta.sin(),
-            l[left_bar] * left_theta.cos(),
-            -l[right_bar] * right_theta.cos(),
+            -lengths[left_bar] * left_theta.sin(),
+            sign * lengths[right_bar] * right_theta.sin(),
+            lengths[left_bar] * left_theta.cos(),
+            -lengths[right_bar] * right_theta.cos(),
         ]
     }
 }
 
 /// The largest difference between elements of two 2x2 blocks, given by rows.
-fn largest_difference(truth: &[f64; 4], block: &[f64; 4]) -> f64 {
-    truth
+fn largest_difference(true_block: &[f64; 4], block: &[f64; 4]) -> f64 {
+    true_block
         .iter()
         .zip(block)
         .fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
@@ -316,7 +343,7 @@ fn active_block(
     first_column: usize,
     second_column: usize,
 ) -> [f64; 4] {
-    let k = sample.s.active_matrix();
+    let k = sample.solution.active_matrix();
     [
         k[row][first_column],
         k[row][second_column],
@@ -325,9 +352,9 @@ fn active_block(
     ]
 }
 
-/// The 2x2 block on the diagonal of the true K* that starts at `column`.
+/// The 2x2 block on the diagonal of the true K* whose first column is `column`.
 fn passive_block(sample: &Sample, column: usize) -> [f64; 4] {
-    let k = sample.s.passive_matrix();
+    let k = sample.solution.passive_matrix();
     [
         k[column][column],
         k[column][column + 1],
@@ -336,8 +363,8 @@ fn passive_block(sample: &Sample, column: usize) -> [f64; 4] {
     ]
 }
 
-/// The 2x2 block of a slider's side: the column of the rear arm, then that of the front arm with `sign` before its
-/// sine.
+/// The 2x2 block of a slider's side. The first column is the rear arm's. The second column is the front arm's, with
+/// `sign` before the sine.
 fn side_block([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -> [f64; 4] {
     [
         rear * rear_angle.sin(),
@@ -347,13 +374,13 @@ fn side_block([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: 
     ]
 }
 
-/// The determinant of a coupler block, divided by the product `lengths` of its bars and with
-/// its sign changed: sin(right angle - left angle).
-fn determinant_sine([a, b, c, d]: &[f64; 4], lengths: f64) -> f64 {
-    -(a * d - b * c) / lengths
+/// Returns sin(right angle - left angle) of a coupler block, from the block's determinant.
+/// `length_product` is the product of the couplers' lengths.
+fn determinant_sine([a, b, c, d]: &[f64; 4], length_product: f64) -> f64 {
+    -(a * d - b * c) / length_product
 }
 
 /// The degrees of freedom of a leg, which equal the number of its drives.
-fn mobility_of_leg(sample: &Sample) -> f64 {
-    crate::mobility::leg_freedoms(&sample.lizard, &sample.s) as f64
+fn leg_freedom_count(sample: &Sample) -> f64 {
+    crate::mobility::leg_freedoms(&sample.lizard, &sample.solution) as f64
 }

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use lizard_kinematics::{End, Vector, Workspace};
 
 use super::equation::Equation;
-use super::sample::{Sample, TABLE, cis};
-use crate::design::{CLAIM, Proportions, SUM, lci};
+use super::sample::{LINK_TABLE, Sample, polar};
+use crate::design::{CLAIMED_LCI, PROPORTION_SUM, Proportions, lci};
 use crate::mobility;
 
 /// The equations in the paper's order.
@@ -15,13 +15,17 @@ pub const EQUATIONS: &[Equation] = &[
         "2.1 mobility of the body",
         "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
         "freedoms against the rank of the constraints",
-        |sample| Some((mobility::body_freedoms(&sample.lizard, &sample.s) as f64 - 4.0).abs()),
+        |sample| {
+            Some((mobility::body_freedoms(&sample.lizard, &sample.solution) as f64 - 4.0).abs())
+        },
     ),
     Equation::new(
         "2.2 mobility of a leg",
         "M = 1",
         "freedoms against the rank of the constraints",
-        |sample| Some((mobility::leg_freedoms(&sample.lizard, &sample.s) as f64 - 1.0).abs()),
+        |sample| {
+            Some((mobility::leg_freedoms(&sample.lizard, &sample.solution) as f64 - 1.0).abs())
+        },
     ),
     Equation::new(
         "3.1 dimensional factor",
@@ -32,7 +36,7 @@ pub const EQUATIONS: &[Equation] = &[
             let bars = proportions.at_scale(d);
             let sum = bars.left_crank_length + bars.left_coupler_length + bars.base / 2.0;
             Some(
-                (sum / SUM - d)
+                (sum / PROPORTION_SUM - d)
                     .abs()
                     .max((proportions.scale_for_base(bars.base) - d).abs()),
             )
@@ -44,7 +48,7 @@ pub const EQUATIONS: &[Equation] = &[
         "D",
         |sample| {
             let r3 = 0.45 * sample.random[0];
-            Some((r3 - (SUM - r3)).max(0.0))
+            Some((r3 - (PROPORTION_SUM - r3)).max(0.0))
         },
     ),
     Equation::new(
@@ -86,12 +90,12 @@ pub const EQUATIONS: &[Equation] = &[
         "3.1.4 conditioning",
         "LCI > 0.7 inside the inscribed circle",
         "of LCI short",
-        |sample| Some((CLAIM - lci_at(sample, 1.0)).max(0.0)),
+        |sample| Some((CLAIMED_LCI - lci_at(sample, 1.0)).max(0.0)),
     )
     .corrected(
         "LCI > 0.7 inside the concentric circle of half the radius; \
          over the whole circle as a mean only",
-        |sample| Some((CLAIM - lci_at(sample, 0.5)).max(0.0)),
+        |sample| Some((CLAIMED_LCI - lci_at(sample, 0.5)).max(0.0)),
     ),
     Equation::new(
         "3.2 table of links",
@@ -123,9 +127,9 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// The error, in radius, of the circle equation at random points on the limits of the arms' reach. `term` returns the
+/// The error, in radius, of the circle equation at random points on the limits of the arms' reach. `y_term` returns the
 /// equation's term in y.
-fn circle_error(sample: &Sample, term: fn(f64) -> f64) -> Option<f64> {
+fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
     let bars = sample.lizard.end(End::Head);
     let mut largest_error = 0.0_f64;
     for shaft in [-bars.base / 2.0, bars.base / 2.0] {
@@ -133,23 +137,23 @@ fn circle_error(sample: &Sample, term: fn(f64) -> f64) -> Option<f64> {
             bars.left_crank_length + bars.left_coupler_length,
             (bars.left_crank_length - bars.left_coupler_length).abs(),
         ] {
-            let rim_point = cis(radius, PI * sample.random[0]);
-            // x11 is measured from the middle of the base, the rim from the shaft.
+            let rim_point = polar(radius, PI * sample.random[0]);
+            // x11 is measured from the middle of the base, but the rim point from the shaft.
             let (x11, y11) = (rim_point.x + shaft, rim_point.y);
-            let square = (x11 - shaft).powi(2) + term(y11);
+            let square = (x11 - shaft).powi(2) + y_term(y11);
             largest_error = largest_error.max((square.sqrt() - radius).abs());
         }
     }
     Some(largest_error)
 }
 
-/// The LCI at a random point of the inscribed circle, shrunk by a factor.
-fn lci_at(sample: &Sample, factor: f64) -> f64 {
+/// The LCI at a random point of the inscribed circle, whose radius is multiplied by `radius_factor`.
+fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
     let bars = sample.lizard.end(End::Head);
     Workspace::of(&bars)
         .inscribed_circle()
         .map_or(0.0, |circle| {
-            let radius = circle.radius * factor * sample.random[0].sqrt();
+            let radius = circle.radius * radius_factor * sample.random[0].sqrt();
             lci(
                 &bars,
                 circle.centre + Vector::direction(360.0 * sample.random[1]) * radius,
@@ -157,13 +161,13 @@ fn lci_at(sample: &Sample, factor: f64) -> f64 {
         })
 }
 
-/// Number of the links l0 to l19 that the table does not list. `read_length` returns the link number of an entry, as
+/// Counts the links l0 to l19 that the table does not list. `link_number` returns the link number of an entry, as
 /// printed or corrected, from its printed number and its length.
-fn count_unlisted_links(read_length: fn(usize, f64) -> usize) -> f64 {
+fn count_unlisted_links(link_number: fn(usize, f64) -> usize) -> f64 {
     let is_listed = |link: usize| {
-        TABLE
+        LINK_TABLE
             .iter()
-            .any(|(links, length)| links.iter().any(|&i| read_length(i, *length) == link))
+            .any(|(links, length)| links.iter().any(|&i| link_number(i, *length) == link))
     };
     (0..20).filter(|&link| !is_listed(link)).count() as f64
 }

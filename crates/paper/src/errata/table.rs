@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use super::entry::Entry;
 
 /// The table of all equations, as lines for a terminal.
-pub fn text(entries: &[Entry], samples: u32) -> String {
+pub fn format_text(entries: &[Entry], sample_count: u32) -> String {
     let holding_count = entries.iter().filter(|entry| entry.holds).count();
     let mut page = format!(
-        "{} printed equations at {samples} random poses: {holding_count} hold, {} do not.\n",
+        "{} printed equations at {sample_count} random poses: {holding_count} hold, {} do not.\n",
         entries.len(),
         entries.len() - holding_count
     );
@@ -36,7 +36,7 @@ pub fn text(entries: &[Entry], samples: u32) -> String {
 }
 
 /// The text of docs/errata.md.
-pub fn markdown(entries: &[Entry], samples: u32) -> String {
+pub fn format_markdown(entries: &[Entry], sample_count: u32) -> String {
     let holding_count = entries.iter().filter(|entry| entry.holds).count();
     let mut page = format!(
         "# Errata of the paper, measured
@@ -45,7 +45,7 @@ Made by `lizard errata --markdown`; a test fails when it is out of date. Nothing
 here is typed in but the equations themselves.
 
 Each printed equation of *Optimal Kinematic Design of a Robotic Lizard using
-Four-Bar and Five-Bar Mechanisms* was evaluated at {samples} random poses (theta1 and
+Four-Bar and Five-Bar Mechanisms* was evaluated at {sample_count} random poses (theta1 and
 -theta5 in 90 to 180, theta4 and -theta8 in 0 to 90 degrees, the paper's lengths)
 and compared with the geometric solution, whose loops close within 1e-9 mm. Angles
 are counter-clockwise from +x in the chassis frame throughout. \"Clockwise\" is a

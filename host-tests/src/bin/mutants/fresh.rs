@@ -1,12 +1,12 @@
-//! Generated mistakes: the changes of every operator, number and call of the firmware's code, shuffled for a random
-//! sample.
+//! Generated mistakes: one for every operator, number and call in the firmware's code, in random order, so that the
+//! first of them are a random sample.
 
 use fastrand::Rng;
 
 use super::list::Mutant;
 
-/// Starts of the paths, in the core, of files that only produce the console's text. All other files of the core, of
-/// the board's code and of the pulses can move a servo or change a saved value.
+/// First parts of the paths of files that only produce the console's text, relative to the core's source. Every other
+/// file can move a servo or change a saved value.
 const TEXT_FILES: [&str; 8] = [
     "answer.rs",
     "console.rs",
@@ -18,8 +18,9 @@ const TEXT_FILES: [&str; 8] = [
     "word.rs",
 ];
 
-/// Parts of the paths of files that do not run on the chip, or that contain tables of another program.
-const HOST_ONLY: [&str; 7] = [
+/// Parts of the paths of files in which no mistake is generated: they do not run on the chip, or contain tables of
+/// another program.
+const EXCLUDED_PATH_PARTS: [&str; 7] = [
     "tests",
     "finder/misread.rs",
     "virtual_board",
@@ -52,11 +53,11 @@ const SWAPS: [(&str, &str); 19] = [
     ("saturating_sub(", "wrapping_add("),
 ];
 
-/// True if the file has code in which mistakes are generated.
+/// True if mistakes are generated in the file.
 pub fn is_firmware(file: &str) -> bool {
     let folders = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
-    let is_host_only = HOST_ONLY.iter().any(|part| file.contains(part));
-    file.ends_with(".rs") && folders.iter().any(|folder| file.starts_with(folder)) && !is_host_only
+    let is_excluded = EXCLUDED_PATH_PARTS.iter().any(|part| file.contains(part));
+    file.ends_with(".rs") && folders.iter().any(|folder| file.starts_with(folder)) && !is_excluded
 }
 
 /// True if a mistake in the file can move a servo or change a saved value.
@@ -66,13 +67,13 @@ pub fn affects_motion(file: &str) -> bool {
 }
 
 /// Returns every mistake that can be generated in a file.
-pub fn all(file: &str, text: &str) -> Vec<Mutant> {
+pub fn mutants_in(file: &str, text: &str) -> Vec<Mutant> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().collect();
     let mut mutants = Vec::new();
     for (index, line) in lines.iter().enumerate() {
         for (description, changed_line) in changes_of(line) {
-            // Includes as many previous lines as make the text unique.
+            // The old text must be unique in the file, so it includes previous lines if necessary.
             let mut first_index = index;
             while first_index > 0
                 && text.matches(&lines[first_index..=index].join("\n")).count() > 1
@@ -86,7 +87,7 @@ pub fn all(file: &str, text: &str) -> Vec<Mutant> {
                 package: file
                     .starts_with("crates/core/")
                     .then(|| "lizard-core".into()),
-                is_fresh: true,
+                is_generated: true,
                 line: index + 1,
                 old: lines[first_index..=index].join("\n"),
                 new: previous_lines
@@ -162,13 +163,13 @@ fn numbers_in(code: &str) -> Vec<(usize, &str)> {
     numbers
 }
 
-/// Shuffles the mistakes by a seed.
+/// Shuffles mistakes. The same seed always gives the same order.
 pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
     Rng::with_seed(seed).shuffle(&mut mutants);
     mutants
 }
 
-/// Returns the Wilson interval of a rate at 95 %: it contains the true rate in 19 of 20 samples.
+/// Returns the 95 % Wilson interval of a rate: of 20 such intervals, about 19 contain the true rate.
 pub fn wilson_interval(noticed: usize, tried: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
     let n = tried.max(1) as f64;
@@ -184,12 +185,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_place_of_a_line_that_can_be_another_is_found_once() {
+    fn every_possible_change_of_a_line_is_generated_once() {
         let text =
             "fn f() {\n    a.b(1); // 2 < 3\n    if x < 17 && y {}\n}\n#[cfg(test)]\n1 < 2\n";
-        let mut actual: Vec<String> = all("crates/core/src/motion/frames.rs", text)
+        let mut actual: Vec<String> = mutants_in("crates/core/src/motion/frames.rs", text)
             .iter()
-            .map(|mutant| mutant.apply(text).expect("it is there once"))
+            .map(|mutant| mutant.apply(text).expect("the old text is unique"))
             .collect();
         actual.sort();
         let text_with = |old, new| text.replacen(old, new, 1);
@@ -207,9 +208,9 @@ mod tests {
     #[test]
     fn a_line_that_occurs_twice_is_identified_by_the_lines_before_it() {
         let text = "one\na = b + c;\ntwo\na = b + c;\n";
-        let changed_texts: Vec<String> = all("crates/pulses/src/lib.rs", text)
+        let changed_texts: Vec<String> = mutants_in("crates/pulses/src/lib.rs", text)
             .iter()
-            .map(|mutant| mutant.apply(text).expect("it is there once"))
+            .map(|mutant| mutant.apply(text).expect("the old text is unique"))
             .collect();
         assert_eq!(changed_texts.len(), 2);
         assert_eq!(changed_texts[1], "one\na = b + c;\ntwo\na = b - c;\n");
@@ -217,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_is_wilsons() {
+    fn the_interval_agrees_with_published_wilson_intervals() {
         // Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
         for (noticed, tried, low, high) in [
             (81, 263, 0.2553, 0.3662),

@@ -1,4 +1,4 @@
-//! The list of deliberate mistakes; the head of `mutants.txt` describes its format.
+//! Deliberate mistakes, and the reader of their list `mutants.txt`, whose first lines describe its format.
 
 /// A mistake that the tests should notice: a replacement of text in one file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -7,14 +7,14 @@ pub struct Mutant {
     pub file: String,
     /// The description of the mistake.
     pub description: String,
-    /// Part of the names of the tests that run first; `None` to run all tests at once.
-    pub test: Option<String>,
-    /// The package whose own tests must notice the mistake, for code that also runs on the host; `None` for code that
-    /// runs only in the firmware.
+    /// Part of the names of the tests that run first; `None` if all tests run at once.
+    pub test_filter: Option<String>,
+    /// The package whose own tests must notice the mistake, if the code also runs on the host; `None` if the code runs
+    /// only in the firmware.
     pub package: Option<String>,
     /// True if the mistake was generated.
-    pub is_fresh: bool,
-    /// Line of the list at which the entry begins or, for a generated mistake, line of the file.
+    pub is_generated: bool,
+    /// The number of the entry's first line in the list or, for a generated mistake, of the changed line in the file.
     pub line: usize,
     /// The correct text, which is replaced.
     pub old: String,
@@ -23,13 +23,13 @@ pub struct Mutant {
 }
 
 impl Mutant {
-    /// Returns a mistake that changes nothing, in a file of the core with this text.
+    /// Returns a mistake that changes nothing in a file of the core. `text` is the file's text.
     pub fn unchanged(file: &str, text: String) -> Self {
         Self {
             file: file.into(),
             description: "nothing".into(),
             package: Some("lizard-core".into()),
-            is_fresh: true,
+            is_generated: true,
             new: text.clone(),
             old: text,
             ..Self::default()
@@ -39,7 +39,7 @@ impl Mutant {
     /// Returns the file's text with the mistake in it.
     ///
     /// # Errors
-    /// Fails if the old text does not occur in the file, or more than once.
+    /// Fails if the old text does not occur exactly once in the file.
     pub fn apply(&self, text: &str) -> Result<String, String> {
         match text.matches(&self.old).count() {
             1 => Ok(text.replace(&self.old, &self.new)),
@@ -52,17 +52,17 @@ impl Mutant {
 /// Reads the entries of `mutants.txt`.
 ///
 /// # Errors
-/// Fails for an unknown line, or an entry without a file, a description or an old text.
+/// Fails if a line has an unknown key, or if an entry has no file, no description or no old text.
 pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
     let mut mutants = Vec::new();
-    let mut open_mutant: Option<Mutant> = None;
+    let mut open_entry: Option<Mutant> = None;
     for (index, line) in list.lines().chain([""]).enumerate() {
         let line_number = index + 1;
         if line.starts_with('#') {
             continue;
         }
         if line.is_empty() {
-            if let Some(mutant) = open_mutant.take() {
+            if let Some(mutant) = open_entry.take() {
                 if mutant.file.is_empty() || mutant.description.is_empty() || mutant.old.is_empty()
                 {
                     let line_number = mutant.line;
@@ -74,7 +74,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
             }
             continue;
         }
-        let mutant = open_mutant.get_or_insert_with(|| Mutant {
+        let mutant = open_entry.get_or_insert_with(|| Mutant {
             line: line_number,
             ..Mutant::default()
         });
@@ -87,7 +87,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
             match key {
                 "file" => mutant.file = value.into(),
                 "wrong" => mutant.description = value.into(),
-                "test" => mutant.test = Some(value.into()),
+                "test" => mutant.test_filter = Some(value.into()),
                 "package" => mutant.package = Some(value.into()),
                 _ => return Err(format!("line {line_number}: what is {key:?}?")),
             }
@@ -109,32 +109,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_entry_replaces_its_old_text_once() {
+    fn an_entry_replaces_its_old_text_which_must_occur_exactly_once() {
         let list =
             "# a list\n\nfile a.rs\nwrong it is two\ntest one\n-let a = 1;\n-\n+let a = 2;\n";
-        let mutants = read(list).expect("it is well formed");
+        let mutants = read(list).expect("the list is valid");
         assert_eq!(mutants.len(), 1);
         assert_eq!(
-            (mutants[0].line, mutants[0].test.as_deref()),
+            (mutants[0].line, mutants[0].test_filter.as_deref()),
             (3, Some("one"))
         );
         let changed_text = mutants[0].apply("let b = 0;\nlet a = 1;\n");
         assert_eq!(changed_text.as_deref(), Ok("let b = 0;\nlet a = 2;"));
-        let missing_error = mutants[0].apply("let a = 3;\n").expect_err("it is gone");
+        let missing_error = mutants[0]
+            .apply("let a = 3;\n")
+            .expect_err("the old text is missing");
         assert!(missing_error.contains("missing"), "{missing_error}");
         let duplicate_error = mutants[0]
             .apply("let a = 1;\nlet a = 1;\n\n")
-            .expect_err("it is there twice");
+            .expect_err("the old text occurs twice");
         assert!(duplicate_error.contains("2 times"), "{duplicate_error}");
     }
 
     #[test]
-    fn a_list_that_cannot_be_read_is_refused_with_its_line() {
+    fn an_invalid_list_is_refused_with_the_number_of_the_line() {
         for (list, line) in [
             ("file a.rs\n-x\n+y\n", "line 1"),
             ("\nfile a\nwhat b\n", "line 3"),
         ] {
-            let error = read(list).expect_err("it must be refused");
+            let error = read(list).expect_err("the list is invalid");
             assert!(error.starts_with(line), "{error}");
         }
     }

@@ -1,17 +1,18 @@
-//! Mutation tests of the firmware, `make mutants`: makes the mistakes of `host-tests/mutants.txt` in a copy of the
-//! tree, one at a time, and reports those that no test notices.
+//! `make mutants`: mutation tests of the firmware. The program makes the mistakes of `host-tests/mutants.txt` in a copy
+//! of the tree, one at a time, and reports those that no test notices.
 //!
 //! Most of the listed mistakes are in the board's code, which runs only in the firmware, so no mutation testing tool
-//! for host crates reaches it. A mistake must be noticed by the tests of the running firmware or, if its entry names
-//! a package, by that package's own tests. The tests of the firmware are built once, from the unchanged tree, and get
-//! each firmware with a mistake by the environment variable LIZARD_ELF.
+//! for host crates reaches it. The tests of the running firmware must notice a mistake or, if its entry names a
+//! package, the package's own tests. The tests of the firmware are built once, from the unchanged tree; the environment
+//! variable LIZARD_ELF names the firmware that they test.
 //!
-//! Run the program from the folder `crates`. Arguments: parts of a file's name or of a mistake's description. The
-//! program tries the entries that contain at least one of them, or all entries if there are no arguments.
+//! Run the program from the folder `crates`. Each argument is a part of a file's name or of a mistake's description.
+//! The program tries the entries that match at least one argument, or all entries if there is no argument.
 //!
-//! With SAMPLE=60 the program tries 60 generated mistakes ([`fresh`]) instead, drawn by SEED from the whole code of
-//! the firmware, and prints the rate at which tests notice them, with its confidence interval. A mistake in the core
-//! is tried first on the core's own tests, then on the model checker, then in the running firmware.
+//! With SAMPLE=60 the program instead tries a random sample of 60 generated mistakes ([`fresh`]) from all code of the
+//! firmware, and prints the rate at which tests notice them, with its confidence interval. SEED selects the sample. For
+//! a mistake in the core, the core's own tests run first, then those of the model checker, then those of the running
+//! firmware.
 
 mod fresh;
 mod list;
@@ -23,13 +24,14 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
 use list::Mutant;
+use lizard_host_tests::read_number;
 
-/// Time after which the tests count as hanging, s.
-const TIMEOUT: u32 = 1_800;
+/// Time after which a test run counts as hanging, s.
+const TIMEOUT_S: u32 = 1_800;
 
-/// Processor time after which a test program counts as hanging, s. A program that does not hang takes at most 90 s of
-/// processor time, whatever else runs on the machine.
-const CPU_TIMEOUT: u32 = 240;
+/// Processor time after which a test program counts as hanging, s. A test program that does not hang takes at most 90
+/// s, even on a busy machine.
+const CPU_TIMEOUT_S: u32 = 240;
 
 /// The root of the repository.
 fn root() -> PathBuf {
@@ -38,21 +40,22 @@ fn root() -> PathBuf {
 
 /// The outcome of the tests with a mistake in the code.
 enum Outcome {
+    /// A test noticed the mistake. The text names the tests that failed.
     Caught(String),
     Unnoticed,
     /// The code with the mistake does not compile.
-    NoProgram,
+    DoesNotCompile,
 }
 
 fn main() -> ExitCode {
     let name_parts: Vec<String> = std::env::args().skip(1).collect();
     let outcome = match read_number("SAMPLE") {
-        Some(count) => sample(
+        Some(count) => try_generated_mistakes(
             &name_parts,
             count as usize,
             read_number("SEED").unwrap_or(1),
         ),
-        None => run(&name_parts),
+        None => try_listed_mistakes(&name_parts),
     };
     match outcome {
         Ok(0) => ExitCode::SUCCESS,
@@ -64,17 +67,13 @@ fn main() -> ExitCode {
     }
 }
 
-fn read_number(name: &str) -> Option<u64> {
-    std::env::var(name).ok()?.parse().ok()
-}
-
-/// Tries `count` generated mistakes. Returns the number that no test notices.
-fn sample(name_parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
-    let scratch = Scratch::copy()?;
+/// Tries `count` generated mistakes. Returns the number of mistakes that no test notices.
+fn try_generated_mistakes(name_parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
+    let scratch = ScratchTree::copy()?;
     let mut mutants = Vec::new();
     for file in scratch.files.iter().filter(|file| fresh::is_firmware(file)) {
         if name_parts.is_empty() || name_parts.iter().any(|part| file.contains(part)) {
-            mutants.extend(fresh::all(file, &read_text(&root().join(file))?));
+            mutants.extend(fresh::mutants_in(file, &read_text(&root().join(file))?));
         }
     }
     println!("seed {seed}: {count} of {} fresh mistakes", mutants.len());
@@ -83,7 +82,7 @@ fn sample(name_parts: &[String], count: usize, seed: u64) -> Result<usize, Strin
         read_text(&root().join("crates/core/src/lib.rs"))?,
     );
     if !matches!(scratch.judge(&unchanged)?, Outcome::Unnoticed) {
-        return Err("a test fails without any mistake".into());
+        return Err("a test fails or hangs without any mistake".into());
     }
     // The numbers of noticed and of tried mistakes, first for code that affects a servo or a saved value, then for
     // code that only produces text.
@@ -94,7 +93,7 @@ fn sample(name_parts: &[String], count: usize, seed: u64) -> Result<usize, Strin
             break;
         }
         let outcome = match scratch.judge(&mutant)? {
-            Outcome::NoProgram => continue,
+            Outcome::DoesNotCompile => continue,
             // Up to a hundred tests may notice a mistake; the first is enough.
             Outcome::Caught(test) => {
                 format!("caught by {}", test.split(',').next().unwrap_or(&test))
@@ -120,24 +119,24 @@ fn sample(name_parts: &[String], count: usize, seed: u64) -> Result<usize, Strin
     Ok(tally.iter().map(|[noticed, tried]| tried - noticed).sum())
 }
 
-/// Tries the listed mistakes. Returns the number that no test notices.
-fn run(name_parts: &[String]) -> Result<usize, String> {
+/// Tries the listed mistakes. Returns the number of mistakes that no test notices.
+fn try_listed_mistakes(name_parts: &[String]) -> Result<usize, String> {
     let list = read_list()?;
-    let is_wanted = |mutant: &&Mutant| {
-        let is_named =
+    let is_selected = |mutant: &&Mutant| {
+        let matches_part =
             |part: &String| mutant.file.contains(part) || mutant.description.contains(part);
-        name_parts.is_empty() || name_parts.iter().any(is_named)
+        name_parts.is_empty() || name_parts.iter().any(matches_part)
     };
-    let list: Vec<&Mutant> = list.iter().filter(is_wanted).collect();
-    let scratch = Scratch::copy()?;
+    let list: Vec<&Mutant> = list.iter().filter(is_selected).collect();
+    let scratch = ScratchTree::copy()?;
     let is_of_board = |mutant: &&&Mutant| mutant.package.is_none();
     if list.iter().find(is_of_board).is_some()
         && let elf = scratch
             .build_firmware()?
             .ok_or("the firmware does not build")?
-        && !run_tests(&elf, "")?.is_none_or(|failed| failed.is_empty())
+        && run_tests(&elf, "")?.is_none_or(|failed| !failed.is_empty())
     {
-        return Err("a test fails without any mistake".into());
+        return Err("a test fails or hangs without any mistake".into());
     }
     let mut unnoticed = Vec::new();
     for mutant in &list {
@@ -149,7 +148,9 @@ fn run(name_parts: &[String]) -> Result<usize, String> {
                 unnoticed.push(mutant);
                 "LIVES".to_owned()
             }
-            Outcome::NoProgram => return Err(format!("{}: it does not build", mutant.description)),
+            Outcome::DoesNotCompile => {
+                return Err(format!("{}: it does not build", mutant.description));
+            }
         };
         let seconds = start.elapsed().as_secs();
         println!(
@@ -172,8 +173,8 @@ fn run(name_parts: &[String]) -> Result<usize, String> {
     Ok(unnoticed.len())
 }
 
-/// Reads the list of mistakes and checks the old texts of all entries: a list that is out of date is an error, even
-/// if only some of its mistakes are tried.
+/// Reads the list of mistakes and checks the old texts of all entries, so that a list that is out of date is an error
+/// even if only some of its mistakes are tried.
 fn read_list() -> Result<Vec<Mutant>, String> {
     let path = root().join("host-tests/mutants.txt");
     let list = list::read(&read_text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
@@ -189,13 +190,13 @@ fn read_text(path: &Path) -> Result<String, String> {
 }
 
 /// A copy of the tree in which mistakes are made, with its own build folders.
-struct Scratch {
+struct ScratchTree {
     folder: PathBuf,
-    /// The files of the copy.
+    /// The paths of the copied files from the root of the tree.
     files: Vec<String>,
 }
 
-impl Scratch {
+impl ScratchTree {
     /// Copies all files that git tracks, as they are in the working tree.
     fn copy() -> Result<Self, String> {
         let folder = root().join("target/mutants");
@@ -217,7 +218,7 @@ impl Scratch {
     }
 
     /// Writes a file of the copy, unless the file already has these bytes: cargo would rebuild a file with a new
-    /// time.
+    /// modification time.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
         let path = self.folder.join("tree").join(name);
         if fs::read(&path).is_ok_and(|old_bytes| old_bytes == bytes) {
@@ -258,10 +259,10 @@ impl Scratch {
 
     fn judge_in_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
         let Some(elf) = self.build_firmware()? else {
-            return Ok(Outcome::NoProgram);
+            return Ok(Outcome::DoesNotCompile);
         };
         // The likely tests run first, since all of them together take a minute.
-        for filter in mutant.test.as_deref().into_iter().chain([""]) {
+        for filter in mutant.test_filter.as_deref().into_iter().chain([""]) {
             match run_tests(&elf, filter)? {
                 None => return Ok(Outcome::Caught("tests that hang".into())),
                 Some(failed_tests) if !failed_tests.is_empty() => {
@@ -278,14 +279,14 @@ impl Scratch {
     fn judge_in_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
         if !self
             .cargo_test(package, &["--no-run"])?
-            .is_some_and(|run| run.0)
+            .is_some_and(|(has_passed, _)| has_passed)
         {
-            return Ok(Outcome::NoProgram);
+            return Ok(Outcome::DoesNotCompile);
         }
-        let is_fresh = mutant.is_fresh;
-        let filters = mutant.test.as_deref().into_iter().chain([""]);
+        let is_generated = mutant.is_generated;
+        let filters = mutant.test_filter.as_deref().into_iter().chain([""]);
         let runs = filters.map(|filter| (package, filter));
-        for (package, filter) in runs.chain(is_fresh.then_some(("lizard-explore", ""))) {
+        for (package, filter) in runs.chain(is_generated.then_some(("lizard-explore", ""))) {
             match self.cargo_test(package, &["--no-fail-fast", "--", filter])? {
                 None => return Ok(Outcome::Caught("tests that hang".into())),
                 Some((false, output_text)) => {
@@ -303,15 +304,15 @@ impl Scratch {
                 Some(_) => {}
             }
         }
-        if is_fresh {
+        if is_generated {
             self.judge_in_firmware(mutant)
         } else {
             Ok(Outcome::Unnoticed)
         }
     }
 
-    /// Runs `cargo test` on a package of the copy. Returns true if the tests passed, and their output; `None` if they
-    /// do not end.
+    /// Runs `cargo test` on a package of the copy. Returns true if the tests passed, and their output; `None` if the
+    /// tests hang.
     fn cargo_test(
         &self,
         package: &str,
@@ -325,8 +326,8 @@ impl Scratch {
     }
 }
 
-/// Runs the firmware's tests whose names contain `filter`. Returns the names of the tests that fail, or `None` if
-/// the tests do not end.
+/// Runs the firmware's tests whose names contain `filter`. Returns the names of the tests that failed; `None` if the
+/// tests hang.
 fn run_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     let arguments = [
         "-p",
@@ -349,7 +350,7 @@ fn run_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         return Ok(None);
     };
     if !output_text.contains("test result:") {
-        // The limit of processor time has ended a test that had started.
+        // A test that had started reached the limit of processor time.
         if output_text.contains("running ") {
             return Ok(None);
         }
@@ -359,7 +360,7 @@ fn run_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
 }
 
 /// Runs `cargo test` in a folder. Returns true if the tests passed, and their output; `None` if the tests do not end
-/// within [`TIMEOUT`].
+/// within [`TIMEOUT_S`].
 fn run_limited(
     folder: &Path,
     arguments: &[&str],
@@ -368,8 +369,8 @@ fn run_limited(
     /// The exit code of `timeout` after a time-out. `timeout` also ends the tests that cargo has started.
     const TIMEOUT_CODE: i32 = 124;
     let output = Command::new("prlimit")
-        .arg(format!("--cpu={CPU_TIMEOUT}"))
-        .args(["timeout", "--kill-after=5", &TIMEOUT.to_string()])
+        .arg(format!("--cpu={CPU_TIMEOUT_S}"))
+        .args(["timeout", "--kill-after=5", &TIMEOUT_S.to_string()])
         .args(["cargo", "test"])
         .args(arguments)
         .current_dir(folder)
@@ -380,8 +381,8 @@ fn run_limited(
         .output()
         .map_err(|error| format!("cargo: {error}"))?;
     let output_text = String::from_utf8_lossy(&output.stdout).into_owned();
-    let is_over = output.status.code() != Some(TIMEOUT_CODE);
-    Ok(is_over.then_some((output.status.success(), output_text)))
+    let has_ended = output.status.code() != Some(TIMEOUT_CODE);
+    Ok(has_ended.then_some((output.status.success(), output_text)))
 }
 
 /// Returns the names of the tests that failed, from the output of the test harness.

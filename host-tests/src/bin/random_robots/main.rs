@@ -1,8 +1,8 @@
-//! Generator of random robots for `make other-robots`: writes files like robot.toml. The tests of the running
-//! firmware are repeated with each of these robots.
+//! Generator of random robots for `make other-robots`. The program writes files like robot.toml. The tests of the
+//! running firmware are repeated with each of these robots.
 //!
-//! Arguments: a folder, a seed, a count. The same seed writes the same robots. If the count is ten or more, each
-//! feature that is rare in the files of `robots/` must occur in one of the robots; otherwise the program fails and
+//! The arguments are a folder, a seed and a count. The same seed gives the same robots. If the count is ten or more,
+//! each feature that is rare in the files of `robots/` must occur in one of the robots; otherwise the program fails and
 //! writes no file.
 
 use std::path::Path;
@@ -12,8 +12,8 @@ use fastrand::Rng;
 use lizard_host_tests::random_robot::random_robot;
 use lizard_robot::Robot;
 
-/// Arduino number of the first analogue pin, at which port C begins.
-const PORT_C: u8 = 14;
+/// The Arduino number of A0, the first pin of port C.
+const FIRST_PORT_C_PIN: u8 = 14;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -57,7 +57,7 @@ fn run(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// A test whether a robot has a feature.
+/// A function that returns true if a robot has a feature.
 type FeatureTest = fn(&Robot) -> bool;
 
 /// Checks that each rare feature occurs in one of the robots. The error names the first missing feature.
@@ -67,7 +67,10 @@ fn check_features(robots: &[(String, Robot)]) -> Result<(), String> {
             robot.servos().iter().any(|servo| servo.us_per_degree < 0.0)
         }),
         ("a servo on port C", |robot| {
-            robot.servos().iter().any(|servo| servo.pin >= PORT_C)
+            robot
+                .servos()
+                .iter()
+                .any(|servo| servo.pin >= FIRST_PORT_C_PIN)
         }),
         ("a rail that is measured", |robot| {
             robot.supplies().rail.is_some()

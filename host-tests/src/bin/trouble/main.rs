@@ -1,32 +1,24 @@
-//! `make trouble`: plays many random scenarios of trouble on the simulated UNO. Prints
-//! progress, a summary by activity, and the first failing scenarios as scripts.
+//! `make trouble`: plays many random scenarios of trouble on the simulated UNO. The program prints its progress, a
+//! summary by activity, and the steps of the first scenarios that fail.
 //!
-//! The environment variables SEED and COUNT choose the scenarios; ONLY plays only the scenario with this number.
-//! `make` runs the program in the folder `crates`.
+//! The environment variables SEED and COUNT select the scenarios. With ONLY, the program plays only the scenario with
+//! this number. `make` runs the program in the folder `crates`.
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 use std::thread;
 use std::time::Instant;
 
-use lizard_host_tests::trouble::{Scenario, campaign, events, judge};
-use lizard_host_tests::{FirmwareBench, patrolling};
+use lizard_host_tests::trouble::{Scenario, events, judge, run_campaign};
+use lizard_host_tests::{FirmwareBench, patrolling_robot, read_number};
 use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
 /// Number of failing scenarios that are printed in full.
 const PRINTED_FAILURES: usize = 5;
 
-fn read_number(name: &str) -> Option<u64> {
-    let text = std::env::var(name).ok().filter(|text| !text.is_empty())?;
-    Some(
-        text.parse()
-            .unwrap_or_else(|_| panic!("{name}={text} is not a number")),
-    )
-}
-
 fn main() -> ExitCode {
-    let image = FirmwareBench::image_with(patrolling());
+    let image = FirmwareBench::image_with(patrolling_robot());
     let seed = read_number("SEED").unwrap_or(1);
     if let Some(scenario_number) = read_number("ONLY") {
         return play_scenario(&image, seed, scenario_number);
@@ -34,16 +26,16 @@ fn main() -> ExitCode {
     let count = read_number("COUNT").unwrap_or(10_000);
     let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
     let start = Instant::now();
-    let summary = campaign(
+    let summary = run_campaign(
         &image,
-        patrolling(),
+        patrolling_robot(),
         seed,
         count,
         thread_count,
         |done_count, failure| {
             if let Some(failure) = failure {
                 let number = failure.scenario.number;
-                let (activity, broken_rule) = (failure.scenario.activity, &failure.broken[0]);
+                let (activity, broken_rule) = (failure.scenario.activity, &failure.broken_rules[0]);
                 println!("scenario {number} ({activity}): broken: {broken_rule}");
             } else if done_count.is_multiple_of(100) && std::io::stdout().is_terminal() {
                 print!("{done_count} of {count}\r");
@@ -68,16 +60,16 @@ fn main() -> ExitCode {
     }
 }
 
-/// Plays one scenario, and prints its events and the rules that they break.
+/// Plays one scenario, and prints its steps, its events and the broken rules.
 fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
-    let scenario = Scenario::of(seed, number, patrolling());
+    let scenario = Scenario::of(seed, number, patrolling_robot());
     print!("{scenario}");
-    let record = lizard_host_tests::trouble::play(image, patrolling(), &scenario);
+    let record = lizard_host_tests::trouble::play(image, patrolling_robot(), &scenario);
     let mut last_pulse_times = [Time::MIN / 2; 4];
     for (time, event) in events(&record) {
         let is_reported = match event {
             Event::ByteReceived | Event::TimePasses => false,
-            // Of a servo's pulses, only the first after more than 30 ms without a pulse is printed.
+            // Prints only the first pulse of a servo after more than 30 ms without a pulse.
             Event::Pulse(pulse) => {
                 let previous_time = std::mem::replace(&mut last_pulse_times[pulse.servo], time);
                 time - previous_time > 30 * MS
@@ -88,7 +80,7 @@ fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
             println!("{:10.3} ms  {event:?}", time as f64 / MS as f64);
         }
     }
-    match judge(image, patrolling(), &scenario).1 {
+    match judge(image, patrolling_robot(), &scenario).1 {
         None => {
             println!("every rule holds");
             ExitCode::SUCCESS

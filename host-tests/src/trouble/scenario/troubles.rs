@@ -1,12 +1,13 @@
-//! The kinds of trouble that a scenario can contain.
+//! Kinds of trouble in scenarios.
 
 use super::{Activity, MS, Script, Step, setup};
 
 impl Script<'_> {
-    /// Adds trouble of a random kind and waits until it is over. In one of four cases, a contact closes first.
+    /// Adds trouble of a random kind and waits until the trouble has ended. In one of four cases, a contact closes
+    /// first.
     pub(super) fn add_trouble(&mut self, activity: Activity) {
         if self.rng.u8(0..4) == 0 {
-            self.press();
+            self.press_random_input();
         }
         match self.rng.u8(0..100) {
             0..50 => self.add_stall(),
@@ -28,7 +29,7 @@ impl Script<'_> {
             92 => self.add_adjustment(),
             93 => {
                 let cycles = self.rng.u64(100..20_000);
-                self.steps.push(Step::Hold(cycles));
+                self.steps.push(Step::BlockInterrupts(cycles));
                 self.wait(40);
             }
             94 => self.steps.push(Step::PowerCycle),
@@ -37,15 +38,14 @@ impl Script<'_> {
         }
     }
 
-    /// Stalls the main loop for 1 to 300 ms and waits for as long: the watchdog may end a hang 250 ms after its
-    /// beginning.
+    /// Stalls the main loop for 1 to 300 ms and waits as long. The watchdog may end the stall after 250 ms.
     fn add_stall(&mut self) {
         let cycles = self.rng.u64(MS..300 * MS);
         self.steps.push(Step::Stall(cycles));
         self.steps.push(Step::Wait(cycles));
     }
 
-    /// Lowers the supply for a while, perhaps below the minimum of the chip or of its RAM.
+    /// Lowers the supply for a while, sometimes below the minimum voltage of the chip or of its RAM.
     fn add_dip(&mut self) {
         let mv = match self.rng.u8(0..8) {
             0 => self.rng.u16(500..1_250),
@@ -58,19 +58,19 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Returns the supply's minima for writing the EEPROM, for moving and for pulses, mV.
-    fn levels(&self) -> [u16; 3] {
+    /// Returns the minimum supply voltages for writing the EEPROM, for moving and for pulses, mV.
+    fn supply_levels_mv(&self) -> [u16; 3] {
         let board = self.robot.supplies().board;
         board.map(|volts| (1_000.0 * volts) as u16)
     }
 
-    /// Lowers the supply for a while, then briefly to a second, mostly lower level, and restores it.
+    /// Lowers the supply for a while, then briefly to a second level, which is usually lower, and restores it.
     fn add_sag(&mut self) {
-        let [slow_mv, stop_mv, rest_mv] = self.levels();
+        let [slow_mv, stop_mv, rest_mv] = self.supply_levels_mv();
         let first_mv = self.rng.u16(stop_mv - 50..slow_mv + 50);
         let second_mv = self.rng.u16(rest_mv - 400..stop_mv);
         self.steps.push(Step::Supply(first_mv));
-        // The first level often counts only after one or two readings.
+        // The firmware usually needs one or two readings to notice the first level.
         self.wait(50);
         self.wait_up_to(100);
         self.steps.push(Step::Supply(second_mv));
@@ -78,9 +78,9 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Lowers the supply for a long time to a level that allows moving but not writing the EEPROM, and orders both.
+    /// Lowers the supply for a long time to a level that allows motion but no writing of the EEPROM, and orders both.
     fn add_low_supply(&mut self) {
-        let [slow_mv, stop_mv, _] = self.levels();
+        let [slow_mv, stop_mv, _] = self.supply_levels_mv();
         let mv = self.rng.u16(stop_mv + 50..slow_mv - 50);
         self.steps.push(Step::Supply(mv));
         self.wait(250);
@@ -107,32 +107,32 @@ impl Script<'_> {
 
     /// Changes settings while the robot moves.
     fn add_adjustment(&mut self) {
-        let gait = self.gait();
+        let gait = self.random_gait();
         self.send(gait);
         for _ in 0..6 {
             self.wait_up_to(700);
-            let line = setup::adjustment(self.rng);
+            let line = setup::random_adjustment(self.rng);
             self.send(line);
         }
         self.wait(700);
     }
 
-    /// Adds a hang, followed by a long time of low supply.
+    /// Adds a stall that the watchdog ends, followed by a long time of low supply.
     fn add_two_faults(&mut self) {
         self.steps.push(Step::Stall(300 * MS));
         self.wait(300);
         self.wait_up_to(2_000);
-        let mv = self.levels()[1] - 100;
+        let mv = self.supply_levels_mv()[1] - 100;
         self.steps.push(Step::Supply(mv));
         self.wait(5_000);
         self.say("status");
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Adds a supply that falls whenever three servos have pulses, for long enough to detect a robot that starts its
-    /// servos again and again. The servos start after an order or a reset.
+    /// Adds a supply that falls whenever three servos have pulses. It lasts long enough to detect a robot that starts
+    /// its servos again and again. An order or a reset starts the servos.
     fn add_weak_supply(&mut self, activity: Activity) {
-        self.steps.push(Step::Weak(true));
+        self.steps.push(Step::WeakSupply(true));
         match activity {
             Activity::Resting => self.send("stand"),
             Activity::Waking | Activity::Starting => {}
@@ -140,6 +140,6 @@ impl Script<'_> {
         }
         self.wait(6_000);
         self.say("status");
-        self.steps.push(Step::Weak(false));
+        self.steps.push(Step::WeakSupply(false));
     }
 }

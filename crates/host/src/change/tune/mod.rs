@@ -5,14 +5,16 @@ mod report;
 use std::io::{self, Write};
 
 use lizard_robot::{CheckedGait, Robot};
-use lizard_tune::{BuiltGait, Comparison, Kind, ScoredParameters, Tuning, TuningError, trials};
+use lizard_tune::{
+    BuiltGait, Comparison, GaitKind, ScoredParameters, Tuning, TuningError, trial_count,
+};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{Spread, Spreads};
+use crate::shared::spread::{SpreadArgs, Spreads};
 use crate::shared::suggestion::did_you_mean;
 
 /// Search for a gait that walks faster with the same servo rate
@@ -62,13 +64,13 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    spread: Spread,
+    spread: SpreadArgs,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "tune";
 
-    fn spread(&mut self) -> &mut Spread {
+    fn spread(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }
@@ -147,13 +149,13 @@ fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
 /// searched independently, so it can be a piece of its own; the trials of a round are distributed over all cores.
 fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
     let rounds = args.rounds as usize;
-    let kind_count = args.spread.own(Kind::ALL.len());
+    let kind_count = args.spread.own_piece_count(GaitKind::ALL.len());
     let bar = progress_bar(
-        kind_count * trials(rounds),
+        kind_count * trial_count(rounds),
         "{bar:40} {pos}/{len} gaits, {eta}",
     );
     let search_kind = |index: usize| -> Vec<(f64, Vec<f64>)> {
-        let kind = Kind::ALL[index];
+        let kind = GaitKind::ALL[index];
         let mut search = tuning.search(kind);
         for _ in 0..=rounds {
             let trial_scores = search.trials().par_iter().map(|parameters| {
@@ -161,16 +163,18 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
                 tuning.score(kind, parameters)
             });
             let scores: Vec<_> = trial_scores.collect();
-            search.score(scores);
+            search.accept_scores(scores);
         }
-        search.found()
+        search.ranked_results()
     };
-    let pieces = args.spread.all_pieces(args, Kind::ALL.len(), search_kind)?;
+    let pieces = args
+        .spread
+        .all_pieces(args, GaitKind::ALL.len(), search_kind)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(None);
     };
-    let kinds = Kind::ALL.into_iter().zip(pieces);
+    let kinds = GaitKind::ALL.into_iter().zip(pieces);
     let scored = kinds.flat_map(|(kind, piece)| {
         piece
             .into_iter()

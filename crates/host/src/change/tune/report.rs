@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_tune::{Comparison, SPREAD};
+use lizard_tune::{Comparison, SPREAD_TEXT};
 
 /// Prints the comparison as a part of a robot.toml: everything except the gait's table is a comment.
 ///
@@ -53,6 +53,6 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
              # faster on {faster} of {robots}:"
         )?;
     }
-    writeln!(out, "# At random: {}.\n", SPREAD.replace('\n', "\n# "))?;
+    writeln!(out, "# At random: {}.\n", SPREAD_TEXT.replace('\n', "\n# "))?;
     write!(out, "{}", comparison.fragment)
 }

@@ -7,7 +7,7 @@ use lizard_upload::{Image, ImageError};
 
 use crate::Failure;
 use crate::shared::files;
-use crate::shared::firmware::CODE;
+use crate::shared::firmware::CODE_HEX;
 
 impl From<ImageError> for Failure {
     fn from(error: ImageError) -> Self {
@@ -20,7 +20,7 @@ impl From<ImageError> for Failure {
 /// # Errors
 /// Never fails for a valid robot; a test makes the image of each robot in robots/.
 pub fn image(robot: &Robot) -> Result<Image, ImageError> {
-    Image::firmware(CODE, &robot.section())
+    Image::firmware(CODE_HEX, &robot.section())
 }
 
 /// Makes the image of a robot's section alone, without the code.
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn each_robots_section_follows_the_same_code_or_stands_alone() {
-        let code = Image::from_hex(CODE).expect("it is Intel HEX");
+        let code = Image::from_hex(CODE_HEX).expect("it is Intel HEX");
         let code = code.bytes();
         assert_eq!(Mark::find(code), Some(Mark::THIS_FIRMWARE));
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");

@@ -7,7 +7,9 @@ use lizard_kinematics::Vector;
 use lizard_robot::{LegPlace, Plate};
 use svg::node::element::{Circle, Group, Line};
 
-use crate::shared::ink::{DARK, SERVO, circle, edged, fixed, line, rectangle};
+use crate::shared::ink::{
+    DARK, SERVO_COLOURS, circle, line, outlined, rectangle, round_hundredths,
+};
 
 const PLATE_COLOUR: &str = "#f4f1ea";
 const EDGE_COLOUR: &str = "#b8b0a0";
@@ -46,7 +48,7 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
 
     /// Draws a disc with an edge.
     pub fn draw_disc(&self, point: Vector, radius_mm: f64, fill: &str) -> Circle {
-        edged(
+        outlined(
             circle((self.project)(point), radius_mm * self.pixels_per_mm, fill),
             DARK,
             0.6 * self.pixels_per_mm,
@@ -70,13 +72,17 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
             (2.0 * half_width, 2.0 * half_height),
             fill,
         )
-        .set("rx", fixed(corner_radius * self.pixels_per_mm));
-        let turn = fixed(-self.turn_deg);
+        .set("rx", round_hundredths(corner_radius * self.pixels_per_mm));
+        let turn = round_hundredths(-self.turn_deg);
         match turn == 0.0 {
             true => Group::new().add(shape),
             false => Group::new().add(shape.set(
                 "transform",
-                format!("rotate({turn} {} {})", fixed(x), fixed(y)),
+                format!(
+                    "rotate({turn} {} {})",
+                    round_hundredths(x),
+                    round_hundredths(y)
+                ),
             )),
         }
     }
@@ -93,7 +99,7 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
             group = group
                 .add(self.draw_bar(idle_joint, leg.foot, LEAF_COLOUR, 2.2))
                 .add(self.draw_disc(leg.foot, FOOT_RADIUS_MM, foot_colours[i]))
-                .add(self.draw_bar(driven_joint, idle_joint, SERVO[i], 4.2));
+                .add(self.draw_bar(driven_joint, idle_joint, SERVO_COLOURS[i], 4.2));
         }
         group
     }
@@ -118,7 +124,7 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
                 colour,
             ));
         }
-        for (case_centre, colour) in plate.case_centres.into_iter().zip(SERVO) {
+        for (case_centre, colour) in plate.case_centres.into_iter().zip(SERVO_COLOURS) {
             let case = self.draw_rectangle(case_centre, plate.case_size * 0.5, 1.3, colour);
             group = group.add(case.set("fill-opacity", 0.35));
         }
@@ -134,17 +140,17 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     ) -> Group {
         for (i, leg) in legs.iter().enumerate() {
             let [servo_arm_tip, crank_joint] = leg.strut_anchors;
-            group = group.add(self.draw_bar(leg.pivots[0], crank_joint, SERVO[i], 3.2));
+            group = group.add(self.draw_bar(leg.pivots[0], crank_joint, SERVO_COLOURS[i], 3.2));
             for (pivot, joint) in leg.pivots.into_iter().zip(leg.joints) {
                 group = group
-                    .add(self.draw_bar(pivot, joint, SERVO[i], 3.2))
+                    .add(self.draw_bar(pivot, joint, SERVO_COLOURS[i], 3.2))
                     .add(self.draw_joint(pivot, 1.7))
                     .add(self.draw_joint(joint, 1.7));
             }
             group = group
                 .add(self.draw_bar(servo_arm_tip, crank_joint, STRUT_COLOUR, 1.6))
                 .add(self.draw_joint(crank_joint, 1.2))
-                .add(self.draw_bar(shafts[i], servo_arm_tip, SERVO[i], 3.0));
+                .add(self.draw_bar(shafts[i], servo_arm_tip, SERVO_COLOURS[i], 3.0));
         }
         group
     }

@@ -7,8 +7,8 @@ use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::{Group, Polygon, Polyline};
 
 use crate::shared::ink::{
-    Anchor, DARK, GREY, PLACES, SERVO, circle, curve, edged, fixed, line, page, rectangle, text,
-    text_end, text_middle, text_start,
+    Anchor, DARK, GREY, SERVO_COLOURS, SERVO_PLACES, circle, curve, line, outlined, rectangle,
+    round_hundredths, svg_page, text, text_end, text_middle, text_start,
 };
 
 const PAGE_SIZE: (f64, f64) = (700.0, 640.0);
@@ -45,7 +45,7 @@ pub fn draw_horns(robot: &Robot) -> String {
         group = group.add(draw_crank(robot, servo));
     }
     group = group.add(draw_example(robot)).add(draw_compass_rose());
-    page(PAGE_SIZE, group)
+    svg_page(PAGE_SIZE, group)
 }
 
 /// The ends of the cranks, mm in the chassis frame: the shaft, and the joint with the coupler.
@@ -123,7 +123,7 @@ fn draw_chassis(robot: &Robot) -> Group {
     let half_height = crank_ends[0].0.y + 9.0;
     let corner = page_point(Vector::new(-half_width, half_height), scale);
     let size = (2.0 * half_width * scale, 2.0 * half_height * scale);
-    let mut group = Group::new().add(edged(
+    let mut group = Group::new().add(outlined(
         rectangle(corner, size, "#f4f1ea").set("rx", 12),
         "#b8b0a0",
         1.5,
@@ -140,7 +140,7 @@ fn draw_chassis(robot: &Robot) -> Group {
             rectangle(
                 corner,
                 (CASE_SIZE_MM.0 * scale, CASE_SIZE_MM.1 * scale),
-                SERVO[servo],
+                SERVO_COLOURS[servo],
             )
             .set("rx", 3)
             .set("fill-opacity", 0.25),
@@ -164,7 +164,7 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
     let (shaft, tip) = crank_ends(robot)[servo];
     let (shaft_point, tip_point) = (page_point(shaft, scale), page_point(tip, scale));
     let angle_deg = robot.servos()[servo].neutral.rem_euclid(360.0);
-    let colour = SERVO[servo];
+    let colour = SERVO_COLOURS[servo];
     // Three lines of text, outside of the robot.
     let first_line_y = if shaft.y > 0.0 {
         tip_point.1 - 56.0
@@ -185,7 +185,7 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
             line(shaft_point, tip_point, colour, 11.0)
                 .set("id", format!("crank-{}", SERVO_NAMES[servo])),
         )
-        .add(edged(circle(tip_point, 6.5, "white"), DARK, 2.0))
+        .add(outlined(circle(tip_point, 6.5, "white"), DARK, 2.0))
         .add(draw_arrow(shaft_point, 22.0, 0.0, angle_deg, DARK))
         .add(circle(shaft_point, 8.0, DARK))
         .add(circle(shaft_point, 3.0, "white"))
@@ -200,7 +200,7 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
             .set("font-weight", "bold"),
         )
         .add(text_middle(
-            PLACES[servo],
+            SERVO_PLACES[servo],
             (tip_point.0, first_line_y + 18.0),
             14.0,
         ))
@@ -247,7 +247,7 @@ fn draw_example(robot: &Robot) -> Group {
             line(
                 SPLINE_CENTRE,
                 point_toward(SPLINE_CENTRE, exact_deg, EXAMPLE_CRANK_LENGTH),
-                SERVO[servo],
+                SERVO_COLOURS[servo],
                 3.0,
             )
             .set("stroke-dasharray", "9 5")
@@ -291,7 +291,7 @@ fn draw_spline(degrees: f64) -> Polygon {
             };
             let degrees_of_corner = degrees + TOOTH_PITCH_DEG / 4.0 * (corner as f64 - 0.5);
             let (x, y) = point_toward(SPLINE_CENTRE, degrees_of_corner, radius);
-            format!("{},{}", fixed(x), fixed(y))
+            format!("{},{}", round_hundredths(x), round_hundredths(y))
         })
         .collect();
     Polygon::new()
@@ -341,7 +341,7 @@ fn draw_compass_rose() -> Group {
     let caption = (middle.0, middle.1 - 84.0);
     let mut group = Group::new()
         .add(text_middle("angles, seen from above", caption, 14.0))
-        .add(edged(circle(middle, 46.0, "none"), GREY, 1.2))
+        .add(outlined(circle(middle, 46.0, "none"), GREY, 1.2))
         .add(draw_arrow(middle, 30.0, 0.0, 70.0, DARK));
     for (degrees, label, anchor, offset) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),

@@ -6,7 +6,7 @@ use svg::node::element::Group;
 
 use super::top_view::{LABEL_GAP_MM, PAGE_SIZE, Point, SKIN_REACH_MM, View};
 use crate::shared::ink::{
-    Anchor, DARK, GREY, SERVO, line, pin_name, text, text_middle, text_start,
+    Anchor, DARK, GREY, SERVO_COLOURS, line, pin_name, text, text_middle, text_start,
 };
 
 /// Distance of the servos' names from the middle of the page, sideways and vertically, pixels.
@@ -36,9 +36,12 @@ impl View<'_> {
             let angle_text = format!("{symbol} = {:.2}°", angles[servo].rem_euclid(360.0));
             let start = (x + 6.0 * -side, y - 4.0);
             group = group
-                .add(line(start, near_shaft, SERVO[servo], 1.2).set("stroke-dasharray", "3 4"))
                 .add(
-                    text(&name_text, (x, y - 8.0), 20.0, SERVO[servo], anchor)
+                    line(start, near_shaft, SERVO_COLOURS[servo], 1.2)
+                        .set("stroke-dasharray", "3 4"),
+                )
+                .add(
+                    text(&name_text, (x, y - 8.0), 20.0, SERVO_COLOURS[servo], anchor)
                         .set("font-weight", "bold"),
                 )
                 .add(text(&angle_text, (x, y + 16.0), 18.0, DARK, anchor));

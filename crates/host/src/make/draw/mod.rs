@@ -60,7 +60,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else if args.horns {
         draw_horns(&robot)
     } else {
-        let pose = args.pose.get().unwrap_or_else(|| robot.neutral_pose());
+        let pose = args.pose.to_pose().unwrap_or_else(|| robot.neutral_pose());
         let solution = robot.lizard().solve(&pose)?;
         draw_top_view(&robot, &solution, !args.plain)
     };

@@ -5,7 +5,7 @@ use lizard_robot::{LegPlace, Robot};
 use svg::node::element::{Group, Path};
 
 use super::body::Sheet;
-use crate::shared::ink::{DARK, SERVO, circle, edged, page};
+use crate::shared::ink::{DARK, SERVO_COLOURS, circle, outlined, svg_page};
 
 pub(super) const PAGE_SIZE: (f64, f64) = (1000.0, 1110.0);
 /// Largest scale of the drawing. The scale is smaller if the robot is too large for the page.
@@ -43,7 +43,7 @@ pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> St
     if has_labels {
         group = view.draw_labels(group);
     }
-    page(PAGE_SIZE, group)
+    svg_page(PAGE_SIZE, group)
 }
 
 /// A robot at a solved pose, and the scale at which it is drawn.
@@ -209,7 +209,7 @@ impl<'a> View<'a> {
         for (servo, tip) in [(front, front_tip), (rear, rear_tip)] {
             group = group
                 .add(
-                    self.draw_bar(self.shafts()[servo], tip, SERVO[servo], 3.0)
+                    self.draw_bar(self.shafts()[servo], tip, SERVO_COLOURS[servo], 3.0)
                         .set("stroke-opacity", 0.75),
                 )
                 .add(self.draw_joint(tip, 2.0));
@@ -226,7 +226,7 @@ impl<'a> View<'a> {
         for servo in servos {
             let (shaft, tip) = (self.shafts()[servo], self.crank_tip(servo));
             group = group
-                .add(self.draw_bar(shaft, tip, SERVO[servo], 4.6))
+                .add(self.draw_bar(shaft, tip, SERVO_COLOURS[servo], 4.6))
                 .add(self.draw_joint(tip, 2.3))
                 .add(circle(
                     self.page_point(shaft),
@@ -239,7 +239,7 @@ impl<'a> View<'a> {
                     "white",
                 ));
         }
-        group.add(edged(
+        group.add(outlined(
             circle(self.page_point(point), 3.4 * self.pixels_per_mm, "#f0e442"),
             DARK,
             2.5,
@@ -260,12 +260,12 @@ impl<'a> View<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::robot_file::named;
+    use crate::shared::robot_file::built_in_robot;
     use lizard_kinematics::{Pose, wrap};
 
     /// Passes the paper's robot at this pose to `check_view`; `None` is the neutral pose.
     fn with_view(pose: Option<Pose>, check_view: impl Fn(&View)) {
-        let robot = named("paper");
+        let robot = built_in_robot("paper");
         let pose = pose.unwrap_or_else(|| robot.neutral_pose());
         let solution = robot.lizard().solve(&pose).expect("the pose closes");
         check_view(&View::new(&robot, &solution));
@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_large_robot_fits_the_page() {
-        let robot = named("large");
+        let robot = built_in_robot("large");
         let solution = robot
             .lizard()
             .solve(&robot.neutral_pose())

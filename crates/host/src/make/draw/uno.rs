@@ -4,7 +4,8 @@ use svg::node::element::{Group, Text};
 
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    Anchor, DARK, GREY, PANEL, circle, edged, fixed, rectangle, text, text_middle, text_start,
+    Anchor, DARK, GREY, PANEL_COLOUR, circle, outlined, rectangle, round_hundredths, text,
+    text_middle, text_start,
 };
 
 /// Distance between neighbouring pins, a tenth of an inch, in pixels.
@@ -69,7 +70,7 @@ impl Uno {
     /// Draws the board, with the pins of `used_pins` emphasised.
     pub fn draw(&self, used_pins: &[u8]) -> Group {
         let size = (BOARD_SIZE.0 * PIN_PITCH, BOARD_SIZE.1 * PIN_PITCH);
-        let mut group = Group::new().add(edged(
+        let mut group = Group::new().add(outlined(
             rectangle(self.upper_left_corner, size, "#dfeaec").set("rx", 8),
             DARK,
             1.5,
@@ -105,7 +106,7 @@ impl Uno {
     /// Adds the sockets, the chip and the LED to `group`.
     fn draw_components(&self, group: Group) -> Group {
         let draw_block = |x: f64, top: f64, size: (f64, f64), fill| {
-            edged(
+            outlined(
                 rectangle(
                     self.page_point(x, top),
                     (size.0 * PIN_PITCH, size.1 * PIN_PITCH),
@@ -138,7 +139,11 @@ impl Uno {
         let colour = if is_used { DARK } else { GREY };
         let label = text(name, (x, y), 12.0, colour, anchor).set(
             "transform",
-            format!("rotate(-90 {} {})", fixed(x), fixed(y)),
+            format!(
+                "rotate(-90 {} {})",
+                round_hundredths(x),
+                round_hundredths(y)
+            ),
         );
         if is_used {
             label.set("font-weight", "bold")
@@ -158,6 +163,6 @@ impl Uno {
 
 /// Draws a hole of a header.
 fn draw_hole(middle: (f64, f64), is_used: bool) -> svg::node::element::Circle {
-    let fill = if is_used { DARK } else { PANEL };
-    edged(circle(middle, 4.0, fill), DARK, 1.2)
+    let fill = if is_used { DARK } else { PANEL_COLOUR };
+    outlined(circle(middle, 4.0, fill), DARK, 1.2)
 }

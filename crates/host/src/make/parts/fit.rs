@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{Spread, Spreads};
+use crate::shared::spread::{SpreadArgs, Spreads};
 
 /// Prove that no two parts meet at any pose that the guard accepts
 ///
@@ -30,13 +30,13 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     #[serde(skip)]
-    spread: Spread,
+    spread: SpreadArgs,
 }
 
 impl Spreads for Args {
     const COMMAND: &'static str = "fit";
 
-    fn spread(&mut self) -> &mut Spread {
+    fn spread(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }
@@ -117,7 +117,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let questions = Questions::new(&assembly, |_, _| true);
     let count = questions.count();
     if let Some(part) = args.spread.part() {
-        let bar = progress_bar(part.count(count), BAR_TEMPLATE);
+        let bar = progress_bar(part.piece_count(count), BAR_TEMPLATE);
         let answer_one = |index| {
             bar.inc(1);
             questions.answer_one(index)
@@ -126,7 +126,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         bar.finish_and_clear();
         return Ok(());
     }
-    let proof = complete_proof(&questions, args.spread.read(count)?);
+    let proof = complete_proof(&questions, args.spread.read_merged(count)?);
     let verdict = proof.judge();
     let mut out = io::stdout().lock();
     if args.json {

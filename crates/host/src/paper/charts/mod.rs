@@ -1,4 +1,4 @@
-//! `lizard draw charts`: the paper's figures, and charts that it lacks, as SVG.
+//! `lizard draw charts`: the paper's figures, and charts that the paper lacks, as SVG.
 
 mod performance;
 mod reach;
@@ -17,10 +17,10 @@ use crate::paper::design;
 use crate::shared::{files, json};
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Step of the grid of the performance charts.
-const STEP: f64 = 0.005;
+/// Step of the grid of the performance charts, in units of D.
+const GRID_STEP: f64 = 0.005;
 /// Number of rings at which an inscribed circle of the performance charts is sampled.
-const RINGS: usize = 16;
+const RING_COUNT: usize = 16;
 
 /// Draw all charts into a folder, as SVG.
 ///
@@ -57,11 +57,11 @@ struct ChartFiles {
 /// Fails for a wrong robot.toml, or a folder or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let pose = args.pose.get().unwrap_or_else(|| robot.neutral_pose());
+    let pose = args.pose.to_pose().unwrap_or_else(|| robot.neutral_pose());
     let solution = robot.lizard().solve(&pose)?;
-    // Created before the charts are computed, which takes seconds, so that a bad folder fails at once.
+    // The charts take seconds to compute. The folder is created first, so that a bad folder fails at once.
     fs::create_dir_all(&args.folder).map_err(|error| files::write_failure(&args.folder, &error))?;
-    let mut pictures = charts(&robot);
+    let mut pictures = draw_charts(&robot);
     pictures.push(("top-view", draw::draw_top_view(&robot, &solution, true)));
     let chart_files: Vec<ChartFiles> = pictures
         .iter()
@@ -82,15 +82,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Every chart that does not depend on a pose, with its name.
-pub fn charts(robot: &Robot) -> Vec<(&'static str, String)> {
-    let points = design::compute_charts(STEP, RINGS);
+/// Draws every chart that does not depend on a pose. Returns each chart's name and SVG text.
+pub fn draw_charts(robot: &Robot) -> Vec<(&'static str, String)> {
+    let points = design::compute_charts(GRID_STEP, RING_COUNT);
     vec![
-        ("workspace", workspace::workspace(robot)),
-        ("workspaces", reach::reach(robot)),
-        ("conditioning", workspace::conditioning(robot)),
-        ("performance", performance::performance(&points, STEP)),
-        ("singularity", singularity::singularity(robot)),
-        ("stroke", stroke::stroke(robot)),
+        ("workspace", workspace::draw_workspace(robot)),
+        ("workspaces", reach::draw_workspaces(robot)),
+        ("conditioning", workspace::draw_conditioning(robot)),
+        (
+            "performance",
+            performance::draw_performance(&points, GRID_STEP),
+        ),
+        ("singularity", singularity::draw_singularities(robot)),
+        ("stroke", stroke::draw_stroke(robot)),
     ]
 }

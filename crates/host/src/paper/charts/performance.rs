@@ -1,31 +1,27 @@
 //! The performance charts over the whole design space.
 
-use lizard_paper::design::{Point, Proportions, SUM};
+use lizard_paper::design::{ChartPoint, PROPORTION_SUM, Proportions};
 
 use std::collections::HashMap;
 
 use svg::node::element::Group;
 
-use crate::shared::ink::{circle, edged, line, page, text_start, title};
-use crate::shared::plot::{Axis, Plot, Scale, VIRIDIS};
+use crate::shared::ink::{add_title, circle, line, outlined, svg_page, text_start};
+use crate::shared::plot::{Axis, ColourScale, Plot, VIRIDIS};
 
-const SIZE: (f64, f64) = (1530.0, 570.0);
+const PAGE_SIZE: (f64, f64) = (1530.0, 570.0);
 const PANEL_SIZE: f64 = 340.0;
 
-/// Workspace area, inscribed circle and mean conditioning index over r1 and r2.
-pub fn performance(points: &[Point], step: f64) -> String {
-    let cell_of = |p: &Proportions| ((p.r1 / step).round() as i64, (p.r2 / step).round() as i64);
+/// Draws workspace area, radius of the inscribed circle, and mean conditioning index over r1 and r2.
+pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
+    let cell_of = |r1: f64, r2: f64| ((r1 / step).round() as i64, (r2 / step).round() as i64);
     let cells: HashMap<_, _> = points
         .iter()
-        .map(|p| (cell_of(&p.proportions), p))
+        .map(|p| (cell_of(p.proportions.r1, p.proportions.r2), p))
         .collect();
-    let look_up = |x: f64, y: f64| {
-        cells
-            .get(&((x / step).round() as i64, (y / step).round() as i64))
-            .copied()
-    };
-    type Value = fn(&Point) -> Option<f64>;
-    let panels: [(&str, Value, f64, usize); 3] = [
+    let point_at = |r1: f64, r2: f64| cells.get(&cell_of(r1, r2)).copied();
+    type ValueFn = fn(&ChartPoint) -> Option<f64>;
+    let panels: [(&str, ValueFn, f64, usize); 3] = [
         ("workspace area / D²", |p| Some(p.performance.area), 2.5, 2),
         (
             "radius of the inscribed circle / D",
@@ -40,57 +36,57 @@ pub fn performance(points: &[Point], step: f64) -> String {
             1,
         ),
     ];
-    let mut group = title(
+    let mut group = add_title(
         Group::new(),
         90.0,
         "Performance charts of the five-bar",
         "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no design; ring: the paper's design",
     );
-    for (i, (name, value, max, digits)) in panels.into_iter().enumerate() {
+    for (i, (name, value_of, max, digits)) in panels.into_iter().enumerate() {
         let plot = Plot {
             corner: (90.0 + 480.0 * i as f64, 150.0),
             size: (PANEL_SIZE, PANEL_SIZE),
-            x: (0.0, SUM),
-            y: (0.0, SUM),
+            x_range: (0.0, PROPORTION_SUM),
+            y_range: (0.0, PROPORTION_SUM),
         };
-        let scale = Scale {
-            least: 0.0,
-            most: max,
+        let scale = ColourScale {
+            min: 0.0,
+            max,
             colours: VIRIDIS,
         };
-        let count = (SUM / step).round() as usize;
+        let step_count = (PROPORTION_SUM / step).round() as usize;
         // Cells are centred on the grid points, so the map extends half a cell beyond the axes.
         let map_plot = Plot {
-            corner: plot.page_point(-step / 2.0, SUM + step / 2.0),
+            corner: plot.page_point(-step / 2.0, PROPORTION_SUM + step / 2.0),
             size: (
-                PANEL_SIZE * (SUM + step) / SUM,
-                PANEL_SIZE * (SUM + step) / SUM,
+                PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM,
+                PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM,
             ),
-            x: (-step / 2.0, SUM + step / 2.0),
-            y: (-step / 2.0, SUM + step / 2.0),
+            x_range: (-step / 2.0, PROPORTION_SUM + step / 2.0),
+            y_range: (-step / 2.0, PROPORTION_SUM + step / 2.0),
         };
-        let axes = (
+        let (x_axis, y_axis) = (
             Axis::new(0.1, "r1, crank"),
             Axis::new(0.1, if i == 0 { "r2, coupler" } else { "" }),
         );
-        group = plot.draw_grid(group, &axes.0, &axes.1);
-        group = map_plot.draw_map(group, (count + 1, count + 1), |x, y| {
-            look_up(x, y)
-                .and_then(value)
+        group = plot.draw_grid(group, &x_axis, &y_axis);
+        group = map_plot.draw_map(group, (step_count + 1, step_count + 1), |x, y| {
+            point_at(x, y)
+                .and_then(value_of)
                 .map(|value| scale.colour(value))
         });
         for r3 in [0.1, 0.2, 0.3, 0.4] {
             let (from, to) = (
-                plot.page_point(0.0, SUM - r3),
-                plot.page_point(SUM - r3, 0.0),
+                plot.page_point(0.0, PROPORTION_SUM - r3),
+                plot.page_point(PROPORTION_SUM - r3, 0.0),
             );
             group = group.add(line(from, to, "white", 0.8).set("stroke-dasharray", "3 4"));
         }
         let (x, y) = plot.page_point(Proportions::PAPER.r1, Proportions::PAPER.r2);
         group = group
-            .add(edged(circle((x, y), 7.0, "none"), "white", 5.0))
-            .add(edged(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
-        group = plot.draw_axes(group, &axes.0, &axes.1);
+            .add(outlined(circle((x, y), 7.0, "none"), "white", 5.0))
+            .add(outlined(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
+        group = plot.draw_axes(group, &x_axis, &y_axis);
         group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
         group = scale.draw_key(
             group,
@@ -100,5 +96,5 @@ pub fn performance(points: &[Point], step: f64) -> String {
             digits,
         );
     }
-    page(SIZE, group)
+    svg_page(PAGE_SIZE, group)
 }

@@ -1,8 +1,8 @@
-//! The chart of the points that tail, body and legs reach, as seen from above.
+//! The chart of the workspaces of tail, body and legs, seen from above.
 //!
 //! The paper draws the workspace of the head and says that those of tail, body and legs can be plotted likewise.
-//! The tail's workspace is that of the head, mirrored. A slider has no end point of its own, so its middle is
-//! plotted. A foot has one degree of freedom, so its workspace is an arc.
+//! The tail's workspace mirrors the head's. A slider has no end point, so its middle is plotted. A foot has one degree
+//! of freedom, so its workspace is an arc.
 
 use std::collections::HashSet;
 
@@ -10,10 +10,12 @@ use lizard_kinematics::{End, Pose, Side, Solution, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use crate::shared::ink::{DARK, GREY, circle, edged, page, rectangle, text_start, title};
-use crate::shared::plot::{Axis, Plot, draw_entry};
+use crate::shared::ink::{
+    DARK, GREY, add_title, circle, outlined, rectangle, svg_page, text_start,
+};
+use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 
-const SIZE: (f64, f64) = (1120.0, 900.0);
+const PAGE_SIZE: (f64, f64) = (1120.0, 900.0);
 const AXES: [Axis<'static>; 2] = [
     Axis::new(40.0, "x, mm to the right of the plate's middle"),
     Axis::new(40.0, "y, mm ahead of it"),
@@ -22,13 +24,13 @@ const AXES: [Axis<'static>; 2] = [
 const HALF_WIDTH: f64 = 160.0;
 /// Width of a cell of the drawn square, mm.
 const CELL_WIDTH: f64 = 2.0;
-/// Range of the servo angles that are tried to either side of neutral, deg.
+/// Largest turn of a servo from neutral that is tried, to either side, deg.
 const MAX_TURN_DEG: i32 = 80;
-/// Colours of the tail's areas: the one that the linkage allows, and the one that the guard accepts.
+/// Colours of the tail's areas: first the area that the linkage allows, then the area that the guard accepts.
 const TAIL_COLOURS: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
-/// Colours of the sliders' areas: the one that the linkage allows, and the one that the guard accepts.
+/// Colours of the sliders' areas: first the area that the linkage allows, then the area that the guard accepts.
 const SLIDER_COLOURS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
-/// Colour of the arcs of the feet that the guard accepts.
+/// Colour of the arcs on which the guard accepts a foot.
 const LEG_COLOUR: &str = "#117733";
 
 /// Indices of cells of the drawn square.
@@ -42,17 +44,17 @@ fn cell_of(point: Vector) -> (i32, i32) {
     )
 }
 
-/// The workspaces of tail, both sliders and all feet.
-pub fn reach(robot: &Robot) -> String {
+/// Draws the workspaces of tail, both sliders and all feet.
+pub fn draw_workspaces(robot: &Robot) -> String {
     let plot = Plot {
         corner: (90.0, 90.0),
         size: (720.0, 720.0),
-        x: (-HALF_WIDTH, HALF_WIDTH),
-        y: (-HALF_WIDTH, HALF_WIDTH),
+        x_range: (-HALF_WIDTH, HALF_WIDTH),
+        y_range: (-HALF_WIDTH, HALF_WIDTH),
     };
-    let tail_cells = accepted_tail(robot);
-    let linkage_cells = linkage_sliders(robot);
-    let slider_cells = accepted_sliders(robot);
+    let tail_cells = accepted_tail_cells(robot);
+    let linkage_cells = linkage_slider_cells(robot);
+    let slider_cells = accepted_slider_cells(robot);
     let cell_count = (2.0 * HALF_WIDTH / CELL_WIDTH) as usize;
     let mut group = plot.draw_grid(Group::new(), &AXES[0], &AXES[1]);
     group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
@@ -89,37 +91,36 @@ pub fn reach(robot: &Robot) -> String {
             );
     }
     for shaft in robot.lizard().shafts() {
-        group = group.add(edged(
+        group = group.add(outlined(
             circle(plot.page_point(shaft.x, shaft.y), 6.0, "white"),
             DARK,
             2.0,
         ));
     }
     group = plot.draw_axes(group, &AXES[0], &AXES[1]);
-    group = title(
+    group = add_title(
         group,
         90.0,
         "Workspaces of tail, body and legs",
         "from above; light: what the links alone allow, dark: what the guard accepts",
     );
-    page(SIZE, draw_legend(group))
+    svg_page(PAGE_SIZE, draw_legend(group))
 }
 
 fn draw_legend(mut group: Group) -> Group {
     let legend_x = 840.0;
     let patches = [
-        (TAIL_COLOURS, "tail's point"),
-        (SLIDER_COLOURS, "middle of a slider (the body)"),
+        (110.0, TAIL_COLOURS, "tail's point"),
+        (142.0, SLIDER_COLOURS, "middle of a slider (the body)"),
     ];
-    for ([light_colour, dark_colour], label) in patches {
-        let y = if label.starts_with('t') { 110.0 } else { 142.0 };
+    for (y, [light_colour, dark_colour], label) in patches {
         group = group
             .add(rectangle((legend_x, y), (17.0, 17.0), light_colour))
             .add(rectangle((legend_x + 17.0, y), (17.0, 17.0), dark_colour))
             .add(text_start(label, (legend_x + 44.0, y + 14.0), 15.0));
     }
-    group = draw_entry(group, (legend_x, 190.0), GREY, "5 4", "circle of a foot");
-    group = draw_entry(
+    group = draw_legend_entry(group, (legend_x, 190.0), GREY, "5 4", "circle of a foot");
+    group = draw_legend_entry(
         group,
         (legend_x, 218.0),
         LEG_COLOUR,
@@ -131,7 +132,7 @@ fn draw_legend(mut group: Group) -> Group {
         (legend_x + 44.0, 242.0),
         15.0,
     ));
-    group = draw_entry(
+    group = draw_legend_entry(
         group,
         (legend_x, 268.0),
         DARK,
@@ -139,7 +140,7 @@ fn draw_legend(mut group: Group) -> Group {
         "where walk has the foot",
     );
     group
-        .add(edged(
+        .add(outlined(
             circle((legend_x + 17.0, 300.0), 6.0, "white"),
             DARK,
             2.0,
@@ -157,7 +158,8 @@ fn turned_angles(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|servo| neutral[servo] + turns[servo])
 }
 
-/// The solutions accepted by the guard for all pairs of turns in steps of a degree.
+/// The solutions that the guard accepts, for all pairs of turns in steps of 1 degree. `turns` returns the turns of
+/// all servos for a pair.
 fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
     let turn_range = || (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from);
     let pairs = turn_range().flat_map(|a| turn_range().map(move |b| (a, b)));
@@ -167,23 +169,23 @@ fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Ve
 }
 
 /// The cells that the tail's point reaches in poses that the guard accepts.
-fn accepted_tail(robot: &Robot) -> Cells {
-    let poses = accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
-    poses
+fn accepted_tail_cells(robot: &Robot) -> Cells {
+    let solutions = accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
+    solutions
         .iter()
-        .map(|pose| cell_of(pose.tail_point()))
+        .map(|solution| cell_of(solution.tail_point()))
         .collect()
 }
 
 /// The cells that the middles of both sliders reach in mirror-symmetric poses. The guard accepts the widest range of
 /// head and tail angles in such poses.
-fn accepted_sliders(robot: &Robot) -> Cells {
-    let poses = accepted_solutions(robot, |a, b| [a, -a, -b, b]);
-    let points = poses.iter().flat_map(|pose| {
+fn accepted_slider_cells(robot: &Robot) -> Cells {
+    let solutions = accepted_solutions(robot, |a, b| [a, -a, -b, b]);
+    let points = solutions.iter().flat_map(|solution| {
         Side::ALL.map(|side| {
             let slider = match side {
-                Side::Left => &pose.left,
-                Side::Right => &pose.right,
+                Side::Left => &solution.left,
+                Side::Right => &solution.right,
             };
             slider_middle(robot, side, slider.rear_tip, slider.front_tip)
         })
@@ -192,12 +194,12 @@ fn accepted_sliders(robot: &Robot) -> Cells {
 }
 
 /// The middle of a slider, from the tips of its arms relative to its rear shaft.
-fn slider_middle(robot: &Robot, side: Side, rear: Vector, front: Vector) -> Vector {
-    robot.lizard().shafts()[side.servos()[1]] + (rear + front) * 0.5
+fn slider_middle(robot: &Robot, side: Side, rear_tip: Vector, front_tip: Vector) -> Vector {
+    robot.lizard().shafts()[side.servos()[1]] + (rear_tip + front_tip) * 0.5
 }
 
 /// The cells of the middles of both sliders for all angles of their arms at which the travel is within the stroke.
-fn linkage_sliders(robot: &Robot) -> Cells {
+fn linkage_slider_cells(robot: &Robot) -> Cells {
     let limits = robot.limits();
     let mut cells = Cells::new();
     for side in Side::ALL {
@@ -207,10 +209,11 @@ fn linkage_sliders(robot: &Robot) -> Cells {
         for (front, rear) in
             directions().flat_map(|front| directions().map(move |rear| (front, rear)))
         {
-            let (rear, front) = (rear * slider.rear_arm, shaft + front * slider.front_arm);
-            let travel = (front - rear).length() - slider.nominal_length;
+            let rear_tip = rear * slider.rear_arm;
+            let front_tip = shaft + front * slider.front_arm;
+            let travel = (front_tip - rear_tip).length() - slider.nominal_length;
             if (limits.stroke_min..=limits.stroke_max).contains(&travel) {
-                cells.insert(cell_of(slider_middle(robot, side, rear, front)));
+                cells.insert(cell_of(slider_middle(robot, side, rear_tip, front_tip)));
             }
         }
     }
@@ -244,7 +247,7 @@ fn foot_positions(
     turns.filter_map(accepted_position).collect()
 }
 
-/// The position of a foot with its servo at `angle`, without lag.
+/// The position of a foot with its servo at `angle` (deg), without lag.
 fn foot_position(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
     let foot = robot.legs()[servo].place_at(angle, angle).foot;
     (foot.x, foot.y)
@@ -263,21 +266,22 @@ fn foot_path(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::robot_file::named;
+    use crate::shared::robot_file::built_in_robot;
 
     fn paper_robot() -> Robot {
-        named("paper")
+        built_in_robot("paper")
     }
 
     #[test]
-    fn poses_accepted_by_the_guard_lie_within_those_of_the_links() {
+    fn points_that_the_guard_accepts_are_within_reach_of_the_links() {
         let robot = paper_robot();
-        let poses = accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
-        assert!(poses.len() > 300, "{}", poses.len());
-        for pose in poses {
-            assert!(is_in_tail(&robot, pose.tail_point()), "{pose:?}");
+        let solutions = accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
+        assert!(solutions.len() > 300, "{}", solutions.len());
+        for solution in solutions {
+            assert!(is_in_tail(&robot, solution.tail_point()), "{solution:?}");
         }
-        let (accepted_cells, linkage_cells) = (accepted_sliders(&robot), linkage_sliders(&robot));
+        let (accepted_cells, linkage_cells) =
+            (accepted_slider_cells(&robot), linkage_slider_cells(&robot));
         let outside_count = accepted_cells.difference(&linkage_cells).count();
         assert!(
             accepted_cells.len() > 100 && outside_count * 20 < accepted_cells.len(),
@@ -286,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_are_those_of_geometry() {
+    fn areas_and_arcs_agree_with_geometry() {
         let robot = paper_robot();
         // The half behind the tail's base has the same area as the head's upper half in `lizard design`.
         let coordinate = |i: i32| f64::from(i) - 160.5;
@@ -295,7 +299,7 @@ mod tests {
         let area = points.filter(|point| is_in_tail(&robot, *point)).count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
         // The middle of a slider is half the sum of two arms of 30 mm, so it lies in a disc with a radius of 30 mm.
-        for (x, y) in linkage_sliders(&robot) {
+        for (x, y) in linkage_slider_cells(&robot) {
             let (x, y) = (
                 CELL_WIDTH * (f64::from(x) + 0.5),
                 CELL_WIDTH * (f64::from(y) + 0.5),

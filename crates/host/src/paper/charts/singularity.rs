@@ -1,19 +1,20 @@
-//! A chart of the angles of the two head servos: margins, singular curves, and the
-//! paths that the gaits take.
+//! The chart of the two head servos' angles, with margins, singular curves, and the paths of the gaits.
 
 use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wrap};
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use crate::shared::ink::{DARK, circle, cross, edged, line, page, rectangle, text_start, title};
-use crate::shared::plot::{Axis, BLUES, IMPOSSIBLE, Plot, Scale, draw_entry};
+use crate::shared::ink::{
+    DARK, add_title, circle, cross, line, outlined, rectangle, svg_page, text_start,
+};
+use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 
-const SIZE: (f64, f64) = (1500.0, 860.0);
+const PAGE_SIZE: (f64, f64) = (1500.0, 860.0);
 /// Range of the angles in the left panel, deg.
 const ANGLE_RANGE: (f64, f64) = (0.0, 180.0);
-/// Colours and dashes of the paths: Okabe and Ito's colours and more dark ones.
-/// Dashes distinguish paths whose colours look alike.
-const STYLES: [(&str, &str); 10] = [
+/// Colours and dashes of the paths: Okabe and Ito's colours, and other dark colours. Dashes distinguish paths whose
+/// colours look alike.
+const PATH_STYLES: [(&str, &str); 10] = [
     ("#000000", ""),
     ("#d55e00", ""),
     ("#117733", ""),
@@ -25,16 +26,16 @@ const STYLES: [(&str, &str); 10] = [
     ("#332288", ""),
     ("#332288", "7 5"),
 ];
-/// Colour of the singular curves of A1's arm.
+/// Colour of the curves on which A1's arm is singular.
 const A1_COLOUR: &str = "#882255";
-/// Colour of the singular curves of A2's arm.
+/// Colour of the curves on which A2's arm is singular.
 const A2_COLOUR: &str = "#b58900";
 
 /// Draws the head's least margin over theta1 and theta4, with the paths of the gaits.
-pub fn singularity(robot: &Robot) -> String {
-    let scale = Scale {
-        least: 0.3,
-        most: 1.0,
+pub fn draw_singularities(robot: &Robot) -> String {
+    let scale = ColourScale {
+        min: 0.3,
+        max: 1.0,
         colours: BLUES,
     };
     let axes_with_step = |step| {
@@ -46,8 +47,8 @@ pub fn singularity(robot: &Robot) -> String {
     let left_plot = Plot {
         corner: (90.0, 110.0),
         size: (600.0, 600.0),
-        x: ANGLE_RANGE,
-        y: ANGLE_RANGE,
+        x_range: ANGLE_RANGE,
+        y_range: ANGLE_RANGE,
     };
     let paths = gait_paths(robot);
     let path_square = square_around(&paths);
@@ -57,16 +58,16 @@ pub fn singularity(robot: &Robot) -> String {
         ..path_square
     };
     let mut group = Group::new();
-    for (plot, cells) in [(&left_plot, 360), (&right_plot, 200)] {
-        group = plot.draw_map(group, (cells, cells), |x, y| {
-            Some(least_margin(robot, x, y).map_or(IMPOSSIBLE, |margin| scale.colour(margin)))
+    for (plot, cell_count) in [(&left_plot, 360), (&right_plot, 200)] {
+        group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
+            Some(least_margin(robot, x, y).map_or(IMPOSSIBLE_COLOUR, |margin| scale.colour(margin)))
         });
     }
-    group = draw_curves(group, &left_plot, robot);
-    // The outline of the right panel in the left one.
-    let corner = left_plot.page_point(path_square.x.0, path_square.y.1);
-    let opposite_corner = left_plot.page_point(path_square.x.1, path_square.y.0);
-    group = group.add(edged(
+    group = draw_singular_curves(group, &left_plot, robot);
+    // The left panel shows the outline of the right panel.
+    let corner = left_plot.page_point(path_square.x_range.0, path_square.y_range.1);
+    let opposite_corner = left_plot.page_point(path_square.x_range.1, path_square.y_range.0);
+    group = group.add(outlined(
         rectangle(
             corner,
             (opposite_corner.0 - corner.0, opposite_corner.1 - corner.1),
@@ -76,7 +77,7 @@ pub fn singularity(robot: &Robot) -> String {
         2.0,
     ));
     for (i, (_, path)) in paths.iter().enumerate() {
-        let (colour, dashes) = STYLES[i % STYLES.len()];
+        let (colour, dashes) = PATH_STYLES[i % PATH_STYLES.len()];
         if path.len() > 1 {
             group = group.add(right_plot.curve(path, "white", 4.5)).add(
                 right_plot
@@ -87,7 +88,11 @@ pub fn singularity(robot: &Robot) -> String {
     }
     for (i, (_, path)) in paths.iter().enumerate() {
         if let [(x, y)] = path[..] {
-            let dot = circle(right_plot.page_point(x, y), 6.0, STYLES[i % STYLES.len()].0);
+            let dot = circle(
+                right_plot.page_point(x, y),
+                6.0,
+                PATH_STYLES[i % PATH_STYLES.len()].0,
+            );
             group = group.add(dot.set("stroke", "white").set("stroke-width", 1.5));
         }
     }
@@ -96,11 +101,11 @@ pub fn singularity(robot: &Robot) -> String {
     let (x, y) = axes_with_step(10.0);
     group = right_plot.draw_axes(group, &x, &y);
     for (i, (names, path)) in paths.iter().enumerate() {
-        let (colour, dashes) = STYLES[i % STYLES.len()];
+        let (colour, dashes) = PATH_STYLES[i % PATH_STYLES.len()];
         let point = (1226.0, 124.0 + 27.0 * i as f64);
         let names = names.replace('-', " ");
         if path.len() > 1 {
-            group = draw_entry(group, point, colour, dashes, &names);
+            group = draw_legend_entry(group, point, colour, dashes, &names);
         } else {
             group = group
                 .add(circle((point.0 + 17.0, point.1), 6.0, colour))
@@ -113,7 +118,7 @@ pub fn singularity(robot: &Robot) -> String {
         (A2_COLOUR, "", "arm of A2 straight or folded (type 1)"),
     ];
     for (i, (colour, dashes, label)) in entries.into_iter().enumerate() {
-        group = draw_entry(
+        group = draw_legend_entry(
             group,
             (930.0, 640.0 + 28.0 * i as f64),
             colour,
@@ -128,7 +133,7 @@ pub fn singularity(robot: &Robot) -> String {
             (974.0, 701.0),
             15.0,
         ))
-        .add(rectangle((930.0, 716.0), (34.0, 18.0), IMPOSSIBLE))
+        .add(rectangle((930.0, 716.0), (34.0, 18.0), IMPOSSIBLE_COLOUR))
         .add(text_start(
             "below the robot's limits, or cranks crossed",
             (974.0, 730.0),
@@ -139,17 +144,17 @@ pub fn singularity(robot: &Robot) -> String {
             (930.0, 762.0),
             15.0,
         ));
-    group = title(
+    group = add_title(
         group,
         90.0,
         "Singularities of the head, and where the gaits go",
         "left: all angles of A1 and A2; right: the marked square with the path of each gait",
     );
-    page(SIZE, group)
+    svg_page(PAGE_SIZE, group)
 }
 
-/// The least of the head's margins, with the tail at neutral; `None` if the pose is
-/// impossible or breaks a limit other than those of the sliders.
+/// The least of the head's margins, with the tail at neutral; `None` if the pose is impossible or breaks a limit
+/// that is not a slider's.
 fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
@@ -233,19 +238,19 @@ fn square_around(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     Plot {
         corner: (0.0, 0.0),
         size: (1.0, 1.0),
-        x: (x.round() - half_size, x.round() + half_size),
-        y: (y.round() - half_size, y.round() + half_size),
+        x_range: (x.round() - half_size, x.round() + half_size),
+        y_range: (y.round() - half_size, y.round() + half_size),
     }
 }
 
 /// Draws the singular curves within the plot, as short segments.
-fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
+fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     let bars = robot.lizard().end(End::Head);
     group = draw_sweep(group, plot, |theta1| {
         bars.singular_poses_with(theta1).collect()
     });
-    // Curves that are steep over theta1 also need a sweep over theta4. It uses the mirrored
-    // five-bar, in which left and right change places.
+    // Curves that are steep over theta1 also need a sweep over theta4. That sweep uses the mirrored five-bar, in which
+    // left and right are exchanged.
     let mirrored_bars = FiveBar {
         base: bars.base,
         left_crank_length: bars.right_crank_length,
@@ -277,10 +282,10 @@ fn draw_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     group
 }
 
-/// Draws a segment from each singular pose to the nearest one of the same kind at the previous angle, if that is
-/// close.
+/// Draws a segment from each singular pose to the nearest singular pose of the same kind at the previous angle, if
+/// the two are close.
 fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
-    const STEP: f64 = 0.5;
+    const STEP_DEG: f64 = 0.5;
     let is_inside = |pose: &&SingularPose| {
         [pose.theta_left, pose.theta_right]
             .iter()
@@ -289,29 +294,29 @@ fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<Singu
     let distance_between = |a: &SingularPose, b: &SingularPose| {
         (a.theta_left - b.theta_left).hypot(a.theta_right - b.theta_right)
     };
-    let mut poses_before: Vec<SingularPose> = Vec::new();
+    let mut previous_poses: Vec<SingularPose> = Vec::new();
     for i in 0..=360 {
-        let poses = poses_at(f64::from(i) * STEP);
+        let poses = poses_at(f64::from(i) * STEP_DEG);
         for pose in poses.iter().filter(is_inside) {
-            let nearest = poses_before
+            let nearest = previous_poses
                 .iter()
                 .filter(is_inside)
                 .filter(|other| {
-                    other.kind == pose.kind && distance_between(other, pose) < 4.0 * STEP
+                    other.kind == pose.kind && distance_between(other, pose) < 4.0 * STEP_DEG
                 })
                 .min_by(|a, b| distance_between(a, pose).total_cmp(&distance_between(b, pose)));
-            if let Some(previous) = nearest {
+            if let Some(previous_pose) = nearest {
                 let colour = match pose.kind {
                     Singularity::LeftArm => A1_COLOUR,
                     Singularity::RightArm => A2_COLOUR,
                     Singularity::Couplers => DARK,
                 };
-                let start = plot.page_point(previous.theta_left, previous.theta_right);
+                let start = plot.page_point(previous_pose.theta_left, previous_pose.theta_right);
                 let end = plot.page_point(pose.theta_left, pose.theta_right);
                 group = group.add(line(start, end, colour, 2.5));
             }
         }
-        poses_before = poses;
+        previous_poses = poses;
     }
     group
 }

@@ -3,39 +3,39 @@
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use crate::shared::ink::{Anchor, GREY, page, rectangle, text, text_start, title};
+use crate::shared::ink::{Anchor, GREY, add_title, rectangle, svg_page, text, text_start};
 use crate::shared::number::round_decimals;
-use crate::shared::plot::{Axis, IMPOSSIBLE, Plot, draw_entry};
+use crate::shared::plot::{Axis, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 
-const COLUMNS: usize = 4;
+const COLUMN_COUNT: usize = 4;
 const PANEL_SIZE: (f64, f64) = (255.0, 150.0);
 const PANEL_PITCH: (f64, f64) = (330.0, 240.0);
 const LEFT_COLOUR: &str = "#0072b2";
 const RIGHT_COLOUR: &str = "#d55e00";
 
-/// Travel of both sliders over a cycle of every gait, and the limits.
-pub fn stroke(robot: &Robot) -> String {
-    let rows = robot.gaits().len().div_ceil(COLUMNS);
+/// Draws the travel of both sliders over a cycle of every gait, and the limits.
+pub fn draw_stroke(robot: &Robot) -> String {
+    let row_count = robot.gaits().len().div_ceil(COLUMN_COUNT);
     let size = (
-        90.0 + PANEL_PITCH.0 * COLUMNS as f64,
-        130.0 + PANEL_PITCH.1 * rows as f64,
+        90.0 + PANEL_PITCH.0 * COLUMN_COUNT as f64,
+        130.0 + PANEL_PITCH.1 * row_count as f64,
     );
     let limits = robot.limits();
-    let range = (limits.stroke_min - 5.0, limits.stroke_max + 5.0);
-    let mut group = title(
+    let travel_range = (limits.stroke_min - 5.0, limits.stroke_max + 5.0);
+    let mut group = add_title(
         Group::new(),
         60.0,
         "Slider travel over a cycle of each gait",
         "s in mm from nominal; grey: beyond the stroke that robot.toml allows",
     );
-    group = draw_entry(
+    group = draw_legend_entry(
         group,
         (size.0 - 300.0, 36.0),
         LEFT_COLOUR,
         "",
         "left slider (A1, A4)",
     );
-    group = draw_entry(
+    group = draw_legend_entry(
         group,
         (size.0 - 300.0, 62.0),
         RIGHT_COLOUR,
@@ -45,20 +45,20 @@ pub fn stroke(robot: &Robot) -> String {
     for (i, gait) in robot.gaits().iter().enumerate() {
         let plot = Plot {
             corner: (
-                80.0 + PANEL_PITCH.0 * (i % COLUMNS) as f64,
-                120.0 + PANEL_PITCH.1 * (i / COLUMNS) as f64,
+                80.0 + PANEL_PITCH.0 * (i % COLUMN_COUNT) as f64,
+                120.0 + PANEL_PITCH.1 * (i / COLUMN_COUNT) as f64,
             ),
             size: PANEL_SIZE,
-            x: (0.0, 1.0),
-            y: range,
+            x_range: (0.0, 1.0),
+            y_range: travel_range,
         };
         group = draw_panel(group, &plot, robot, gait);
     }
-    page(size, group)
+    svg_page(size, group)
 }
 
 fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
-    let axes = (
+    let (x_axis, y_axis) = (
         Axis::new(0.25, "phase"),
         Axis::new(
             15.0,
@@ -69,13 +69,17 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
             },
         ),
     );
-    group = plot.draw_grid(group, &axes.0, &axes.1);
+    group = plot.draw_grid(group, &x_axis, &y_axis);
     for (from, to) in [
-        (plot.y.0, robot.limits().stroke_min),
-        (robot.limits().stroke_max, plot.y.1),
+        (plot.y_range.0, robot.limits().stroke_min),
+        (robot.limits().stroke_max, plot.y_range.1),
     ] {
         let (top, bottom) = (plot.page_point(0.0, to), plot.page_point(0.0, from));
-        group = group.add(rectangle(top, (plot.size.0, bottom.1 - top.1), IMPOSSIBLE));
+        group = group.add(rectangle(
+            top,
+            (plot.size.0, bottom.1 - top.1),
+            IMPOSSIBLE_COLOUR,
+        ));
     }
     let samples: Vec<(f64, f64, f64)> = (0..=400)
         .map(|i| f64::from(i) / 400.0)
@@ -96,10 +100,10 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
             plot.curve(&curve_of(|sample| sample.2), RIGHT_COLOUR, 2.5)
                 .set("stroke-dasharray", "7 4"),
         );
-    group = plot.draw_axes(group, &axes.0, &axes.1);
-    let values = || samples.iter().flat_map(|sample| [sample.1, sample.2]);
-    let min_travel = values().fold(f64::INFINITY, f64::min);
-    let max_travel = values().fold(f64::NEG_INFINITY, f64::max);
+    group = plot.draw_axes(group, &x_axis, &y_axis);
+    let travels = || samples.iter().flat_map(|sample| [sample.1, sample.2]);
+    let min_travel = travels().fold(f64::INFINITY, f64::min);
+    let max_travel = travels().fold(f64::NEG_INFINITY, f64::max);
     let title_point = (plot.corner.0, plot.corner.1 - 10.0);
     let range_text = format!(
         "{:+.1} to {:+.1} mm",

@@ -7,7 +7,7 @@ use lizard_robot::Robot;
 use lizard_upload::{robot_in, robot_label};
 use simulated_uno::{Image, LoadError};
 
-use super::CODE;
+use super::CODE_HEX;
 use crate::shared::files::note_input;
 use crate::{Failure, RobotFile};
 
@@ -20,16 +20,16 @@ pub struct Firmware {
     pub image: Image,
 }
 
-/// The error for a file that is not a program of an AVR, or cannot be read.
+/// The error for a file that cannot be read or is not a program of an AVR.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {error}; `make firmware` builds it", elf.display())]
-pub struct Unreadable {
+pub struct ReadError {
     elf: PathBuf,
     error: LoadError,
 }
 
-impl From<Unreadable> for Failure {
-    fn from(error: Unreadable) -> Self {
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
         Self::Input(error.to_string())
     }
 }
@@ -38,8 +38,8 @@ impl From<Unreadable> for Failure {
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not a program of an AVR.
-pub fn read(elf: &Path) -> Result<Image, Unreadable> {
-    Image::read(note_input(elf)).map_err(|error| Unreadable {
+pub fn read_image(elf: &Path) -> Result<Image, ReadError> {
+    Image::read(note_input(elf)).map_err(|error| ReadError {
         elf: elf.to_owned(),
         error,
     })
@@ -51,15 +51,15 @@ enum FirmwareError {
     #[error("there is no firmware at {0}; without --elf, the one inside this program is used")]
     Missing(String),
     #[error(
-        "{} has the robot {its} in it, and not {robot}, which is {wanted}; without --elf, the \
-         firmware inside this program runs with any robot",
+        "{} has the robot {elf_robot} in it, and not {robot}, which is {robot_label}; without \
+         --elf, the firmware inside this program runs with any robot",
         elf.display()
     )]
     OtherRobot {
         elf: PathBuf,
         robot: String,
-        its: String,
-        wanted: String,
+        elf_robot: String,
+        robot_label: String,
     },
 }
 
@@ -69,13 +69,13 @@ impl From<FirmwareError> for Failure {
     }
 }
 
-/// The firmware to run for a robot: the given file, which must contain this robot, or the code inside this program
-/// followed by this robot. `robot_file` is the robot's source.
+/// Returns the firmware to run for a robot: the given file, which must contain this robot, or the code inside this
+/// program followed by this robot. `robot_file` is the robot's source.
 ///
-/// An image without a robot's section is another program and is accepted: running it shows what it does.
+/// An image without a robot's section is another program. It is accepted, because it can be run, too.
 ///
 /// # Errors
-/// Fails if the file is missing, is not a program of an AVR, or has another robot in it.
+/// Fails if the file is missing, is not a program of an AVR, or contains another robot.
 pub(crate) fn select_firmware(
     elf: Option<&Path>,
     robot_file: &RobotFile,
@@ -83,20 +83,20 @@ pub(crate) fn select_firmware(
 ) -> Result<Firmware, Failure> {
     let Some(elf) = elf else {
         let name = format!("the firmware of lizard {}", env!("CARGO_PKG_VERSION"));
-        let image = image_with(robot);
+        let image = built_in_image(robot);
         return Ok(Firmware { name, image });
     };
     if !elf.is_file() {
         return Err(FirmwareError::Missing(elf.display().to_string()).into());
     }
-    let image = read(elf)?;
+    let image = read_image(elf)?;
     if let Some(robot_in_image) = robot_in(&image.flash())
         && robot_in_image.hash() != robot.firmware().hash()
     {
         return Err(FirmwareError::OtherRobot {
             robot: robot_file.name()?,
-            its: robot_label(&robot_in_image),
-            wanted: robot_label(robot.firmware()),
+            elf_robot: robot_label(&robot_in_image),
+            robot_label: robot_label(robot.firmware()),
             elf: elf.to_owned(),
         }
         .into());
@@ -118,30 +118,31 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
 ///
 /// # Panics
 /// Never: a test reads that code, and a robot's section has room.
-pub fn image_with(robot: &Robot) -> Image {
-    let mut image = Image::parse_hex(CODE).expect("a test reads it");
-    put_robot(&mut image, robot).expect("a robot's section has room");
+pub fn built_in_image(robot: &Robot) -> Image {
+    let mut image = Image::parse_hex(CODE_HEX).expect("a test reads it");
+    replace_robot(&mut image, robot).expect("a robot's section has room");
     image
 }
 
-/// The image with this robot, whose routines do not wait for contacts: see [`Robot::without_contacts`].
+/// The image with this robot's routines changed so that they do not wait for contacts; see
+/// [`Robot::without_contacts`].
 ///
 /// # Panics
-/// Never: the section is as long as that of the robot.
+/// Never: the new section is as long as the old section.
 pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
-    put_robot(&mut image, &robot.without_contacts()).expect("a robot's section has room");
+    replace_robot(&mut image, &robot.without_contacts()).expect("a robot's section has room");
     image
 }
 
-/// The program of an ELF or HEX file with this robot in place of the file's robot. A program
-/// without a robot stays unchanged.
+/// Reads the program of an ELF or HEX file and replaces the file's robot by this robot. A program without a robot
+/// stays unchanged.
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not a program of an AVR.
-pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
-    let mut image = read(path)?;
+pub fn read_with_robot(path: &Path, robot: &Robot) -> Result<Image, ReadError> {
+    let mut image = read_image(path)?;
     if robot_in(&image.flash()).is_some() {
-        put_robot(&mut image, robot).map_err(|error| Unreadable {
+        replace_robot(&mut image, robot).map_err(|error| ReadError {
             elf: path.to_owned(),
             error,
         })?;
@@ -150,7 +151,7 @@ pub fn with_robot(path: &Path, robot: &Robot) -> Result<Image, Unreadable> {
 }
 
 /// Replaces the robot's section of an image.
-fn put_robot(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
+fn replace_robot(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
     let start = u32::from(START_ADDRESS);
     image.replace(start..start + u32::from(SPACE_BYTES), &robot.section())
 }

@@ -150,7 +150,7 @@ impl Figures {
             Ok(board)
         };
         report_progress("the stack's depth");
-        let image = firmware::read(elf)?;
+        let image = firmware::read_image(elf)?;
         let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
         report_progress("pulses on an idle line");
         let mut idle_run = GaitRun::of(boot_board()?, gait, 20_000)?;

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::budget::{Bound, Row, SERVO_LIBRARY};
-use crate::shared::number::grouped;
+use crate::shared::number::format_grouped;
 
 /// Prints a row for each figure, then notes about the measured `gait` and the missing figures.
 ///
@@ -17,8 +17,8 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
     )?;
     for row in rows {
         let budget = match row.budget {
-            Bound::AtMost(max) => format!("at most {}", grouped(max, 0)),
-            Bound::AtLeast(min) => format!("at least {}", grouped(min, 0)),
+            Bound::AtMost(max) => format!("at most {}", format_grouped(max, 0)),
+            Bound::AtLeast(min) => format!("at least {}", format_grouped(min, 0)),
             Bound::None => "-".to_owned(),
         };
         let decimals = if row.unit == "%" || row.unit == "s" {
@@ -30,7 +30,9 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
             "{:<30} {:>10} {:<7} {:>16}   {}{}",
             row.what,
             row.measured
-                .map_or("-".to_owned(), |measured| grouped(measured, decimals)),
+                .map_or("-".to_owned(), |measured| format_grouped(
+                    measured, decimals
+                )),
             row.unit,
             budget,
             row.servo_library.unwrap_or(""),

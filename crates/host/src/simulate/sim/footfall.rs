@@ -68,7 +68,7 @@ mod tests {
 
     /// Five seconds of a gait, then a second of rest.
     fn gait_frames(gait: &str) -> Vec<ServoFrame> {
-        let robot = crate::shared::robot_file::named("paper");
+        let robot = crate::shared::robot_file::built_in_robot("paper");
         let gait = robot.gait(gait).expect("the gait is in robot.toml");
         let neutral: [f64; 4] = robot.neutral_pose().into();
         (0..300)

@@ -8,8 +8,8 @@ use super::footfall::{FootSpan, Phase, foot_spans};
 use super::spans::Span;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    Anchor, DARK, GREY, GRID, PANEL, PLACES, SERVO, curve, line, page, rectangle, text,
-    text_middle, text_start, title,
+    Anchor, DARK, GREY, GRID_COLOUR, PANEL_COLOUR, SERVO_COLOURS, SERVO_PLACES, add_title, curve,
+    line, rectangle, svg_page, text, text_middle, text_start,
 };
 
 /// Width of the picture, px.
@@ -65,7 +65,7 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
         end_s: end_s.max(0.1),
     };
     let half_range_deg = chart.half_range_deg();
-    let mut group = title(Group::new(), LEFT_MARGIN, caption.title, caption.note);
+    let mut group = add_title(Group::new(), LEFT_MARGIN, caption.title, caption.note);
     group = chart.draw_commands(group);
     for servo in 0..4 {
         group = chart.draw_strip(group, servo, half_range_deg);
@@ -73,7 +73,7 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     }
     group = chart.draw_command_changes(group);
     group = chart.draw_axis(group);
-    page((WIDTH, HEIGHT), group)
+    svg_page((WIDTH, HEIGHT), group)
 }
 
 /// The contents of a picture.
@@ -141,20 +141,20 @@ impl Chart<'_> {
         let y_of =
             |angle: f64| top + STRIP_HEIGHT / 2.0 * (1.0 - (angle - neutral) / half_range_deg);
         let (start_x, end_x) = (self.x_at(0.0), self.x_at(self.end_s));
-        let name = format!("{} {}", SERVO_NAMES[servo], PLACES[servo]);
+        let name = format!("{} {}", SERVO_NAMES[servo], SERVO_PLACES[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
         group = group
             .add(rectangle(
                 (start_x, top),
                 (end_x - start_x, STRIP_HEIGHT),
-                PANEL,
+                PANEL_COLOUR,
             ))
             .add(
                 text(
                     &name,
                     (14.0, top + STRIP_HEIGHT / 2.0 - 2.0),
                     17.0,
-                    SERVO[servo],
+                    SERVO_COLOURS[servo],
                     Anchor::Start,
                 )
                 .set("font-weight", "bold"),
@@ -170,7 +170,12 @@ impl Chart<'_> {
         let first_tick = -(half_range_deg / tick_interval_deg).floor() as i32;
         for tick in first_tick..=-first_tick {
             let angle = neutral + f64::from(tick) * tick_interval_deg;
-            let grid_line = line((start_x, y_of(angle)), (end_x, y_of(angle)), GRID, 1.0);
+            let grid_line = line(
+                (start_x, y_of(angle)),
+                (end_x, y_of(angle)),
+                GRID_COLOUR,
+                1.0,
+            );
             group = group.add(if tick == 0 {
                 grid_line
                     .set("stroke", "#999999")
@@ -187,7 +192,7 @@ impl Chart<'_> {
                 .iter()
                 .map(|(seconds, angle)| (self.x_at(*seconds), y_of(*angle)))
                 .collect();
-            group = group.add(curve(&points, SERVO[servo], 2.2));
+            group = group.add(curve(&points, SERVO_COLOURS[servo], 2.2));
         }
         group
     }
@@ -229,13 +234,13 @@ impl Chart<'_> {
             .add(rectangle(
                 (start_x, top),
                 (end_x - start_x, FOOT_HEIGHT),
-                PANEL,
+                PANEL_COLOUR,
             ))
             .add(text(
-                PLACES[servo],
+                SERVO_PLACES[servo],
                 (LEFT_MARGIN - 12.0, top + FOOT_HEIGHT / 2.0 + 5.0),
                 15.0,
-                SERVO[servo],
+                SERVO_COLOURS[servo],
                 Anchor::End,
             ));
         let spans_of_foot = foot_spans(self.run.servo_frames(), servo);
@@ -248,7 +253,7 @@ impl Chart<'_> {
             let (x, width) = (self.x_at(from), self.x_at(to) - self.x_at(from));
             group = group.add(draw_foot_span(
                 phase,
-                SERVO[servo],
+                SERVO_COLOURS[servo],
                 (x, top),
                 (width, FOOT_HEIGHT),
             ));
@@ -386,7 +391,7 @@ mod tests {
     use crate::simulate::sim::frame_log::FrameLog;
 
     fn draw_picture(frame_count: usize, width_at: impl Fn(usize) -> u16, spans: &[Span]) -> String {
-        let robot = crate::shared::robot_file::named("paper");
+        let robot = crate::shared::robot_file::built_in_robot("paper");
         let log = FrameLog {
             widths: (0..frame_count).map(|index| [width_at(index); 4]).collect(),
             ..FrameLog::default()

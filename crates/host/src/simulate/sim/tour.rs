@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn the_demonstration_of_the_paper_robot_is_walk_and_left() {
-        let robot = crate::shared::robot_file::named("paper");
+        let robot = crate::shared::robot_file::built_in_robot("paper");
         assert_eq!(demonstration_gaits(&robot), ["walk", "left"]);
         assert!(!moving_gaits(&robot).contains(&"stand"));
     }

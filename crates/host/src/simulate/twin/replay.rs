@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lizard_robot::{CheckedGait, Place, Robot};
-use lizard_twin::{FRAME, ServoModel, State, Tally, Twin};
+use lizard_twin::{FRAME_S, ServoModel, State, Tally, Twin};
 use simulated_uno::CYCLES_PER_US;
 
 use crate::simulate::sim::frame_log::FrameLog;
@@ -67,7 +67,7 @@ impl Replay {
             .robot
             .gait(&stage.command)
             .filter(|gait| gait.has_movement())?;
-        let frame_count = (gait.period() / FRAME).round() as usize;
+        let frame_count = (gait.period() / FRAME_S).round() as usize;
         let start_frame = stage.frames.end.checked_sub(frame_count)?;
         (start_frame >= stage.frames.start + frame_count)
             .then_some((gait, start_frame..stage.frames.end))

@@ -130,7 +130,7 @@ impl Report {
             let prediction = gait_prediction
                 .as_ref()
                 .or(round.as_ref().map(|(_, prediction)| prediction));
-            let seconds_at = |frame: usize| replay.start_s + frame as f64 * lizard_twin::FRAME;
+            let seconds_at = |frame: usize| replay.start_s + frame as f64 * lizard_twin::FRAME_S;
             let reported_tally: &Tally = cycle_tally.as_ref().unwrap_or(&stage_tally);
             Row {
                 command: stage.command.clone(),
@@ -155,14 +155,14 @@ impl Report {
                 round: round
                     .filter(|(round, _)| !round.has_inputs)
                     .map(|(_, prediction)| prediction.into()),
-                foot_slip: reported_tally.slip,
-                lag: reported_tally.lag,
+                foot_slip: reported_tally.slips,
+                lag: reported_tally.max_lag,
                 margin: reported_tally
-                    .margin
+                    .min_margin
                     .map(|(check, value)| (check.name(), value)),
-                stroke: reported_tally.stroke,
-                servo_rate: reported_tally.rate,
-                servo_error: reported_tally.error,
+                stroke: reported_tally.stroke_range,
+                servo_rate: reported_tally.max_rate,
+                servo_error: reported_tally.max_error,
             }
         };
         Self {

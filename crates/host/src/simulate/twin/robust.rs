@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use lizard_robot::{CheckedGait, Effort, Ground, HIGH_LINE_SHARE, PACES_PERCENT, Robot, Travel};
-use lizard_tune::{FRICTION, PLAY_SPREAD, SPREAD, Variation, quantiles};
+use lizard_tune::{FRICTION_FACTORS, PLAY_SPREAD_TEXT, SPREAD_TEXT, Variation, quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
 
@@ -45,7 +45,7 @@ struct EffortShare {
 impl EffortShare {
     /// The shares of a gait at each of the [`PACES_PERCENT`] on every supply.
     fn of_gait(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
-        let efforts = [1.0, FRICTION.1].map(|factor| {
+        let efforts = [1.0, FRICTION_FACTORS.1].map(|factor| {
             let ground = Ground {
                 friction_coefficient: robot.ground().friction_coefficient * factor,
                 ..*robot.ground()
@@ -99,7 +99,7 @@ pub fn run(
             bar.inc(1);
             Variation::of(robot.ground(), seed)
                 .with_play(seed)
-                .walked(robot, gait, model)
+                .simulate_cycle(robot, gait, model)
         };
         let paths: Vec<Travel> = (0..u64::from(variation_count)).map(walk_once).collect();
         spreads.push(Spread::of(
@@ -140,7 +140,7 @@ impl Spread {
 fn print(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "\n{variation_count} robots and floors: {SPREAD}, {PLAY_SPREAD}; a cycle, mm and deg:\n"
+        "\n{variation_count} robots and floors: {SPREAD_TEXT}, {PLAY_SPREAD_TEXT}; a cycle, mm and deg:\n"
     )?;
     let columns = [
         "ahead  5 %",

@@ -1,12 +1,12 @@
 //! Tests that the pages in docs/ agree with the program's output.
 
-use lizard_paper::errata::{SAMPLES, markdown, measure};
+use lizard_paper::errata::{SAMPLE_COUNT, format_markdown, measure};
 
 use crate::program::{read_file, repo_root, run_line, with_paper};
 
 #[test]
 fn the_errata_page_has_the_measured_figures_and_every_correction_holds() {
-    let entries = measure(SAMPLES, &|| {});
+    let entries = measure(SAMPLE_COUNT, &|| {});
     assert!(entries.iter().all(|entry| entry.is_settled()));
     // Each printed form has one entry, so no erratum is counted twice.
     let json_entries = run_line("errata --samples 1 --json", "").expect_json();
@@ -22,7 +22,7 @@ fn the_errata_page_has_the_measured_figures_and_every_correction_holds() {
     forms.dedup();
     assert_eq!(forms.len(), count, "a condition is counted twice");
     assert!(
-        read_file("docs/errata.md") == markdown(&entries, SAMPLES),
+        read_file("docs/errata.md") == format_markdown(&entries, SAMPLE_COUNT),
         "docs/errata.md is out of date: lizard errata --markdown > docs/errata.md"
     );
 }

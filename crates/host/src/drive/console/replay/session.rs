@@ -202,7 +202,7 @@ const _: () = assert!(crate::simulate::sim::frame::FRAME_CYCLES == FRAME_MS * CY
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::robot_file::named;
+    use crate::shared::robot_file::built_in_robot;
 
     const BEGIN: &str =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
@@ -240,7 +240,7 @@ mod tests {
             // Late by a frame and a half; frame 52 is missing.
             pose_line(190, 53, 140.590378),
         ]);
-        let log = session.frame_log(&named("paper"));
+        let log = session.frame_log(&built_in_robot("paper"));
         let a1_widths: Vec<u16> = log.widths.iter().map(|widths| widths[0]).collect();
         assert_eq!(
             a1_widths,
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn a_robot_that_falls_behind_the_clock_has_no_gap() {
         let slow_poses = (0..100).map(|n| pose_line(20 + 30 * n, n, 138.590378));
-        let log = session_of(&slow_poses.collect::<Vec<_>>()).frame_log(&named("paper"));
+        let log = session_of(&slow_poses.collect::<Vec<_>>()).frame_log(&built_in_robot("paper"));
         let first = log.widths.iter().position(|widths| widths[0] > 0);
         assert_eq!(first, Some(1));
         assert!(log.widths[1..140].iter().all(|widths| widths[0] == 24_000));
@@ -273,7 +273,7 @@ mod tests {
             // No robot counts so many frames.
             pose_line(190, u64::MAX, 138.590378),
         ]);
-        let log = session.frame_log(&named("paper"));
+        let log = session.frame_log(&built_in_robot("paper"));
         let pulsed_frames: Vec<usize> = (0..10).filter(|n| log.widths[*n][0] > 0).collect();
         assert_eq!(pulsed_frames, [1, 4, 8, 9]);
     }

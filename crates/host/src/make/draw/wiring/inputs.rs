@@ -8,7 +8,8 @@ use svg::node::element::Group;
 
 use super::wire::{BLACK, THIN_WIDTH, draw_terminal};
 use crate::shared::ink::{
-    DARK, GREY, ORANGE, RED, circle, curve, edged, line, pin_name, rectangle, text_end, text_start,
+    DARK, GREY, ORANGE, RED, circle, curve, line, outlined, pin_name, rectangle, text_end,
+    text_start,
 };
 
 /// Height of the panel, pixels.
@@ -35,7 +36,7 @@ pub fn panel_height(robot: &Robot) -> f64 {
 /// Draws the panel with its upper edge at y = `top`.
 pub fn draw(robot: &Robot, top: f64) -> Group {
     let frame = rectangle((16.0, top), (668.0, PANEL_HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
-    let frame = edged(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
+    let frame = outlined(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
     let title = "Option: inputs, for routines that wait or turn away";
     let mut group = Group::new()
         .add(frame)
@@ -88,7 +89,7 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
     .set("rx", 5);
     let middle = y + ROW_HEIGHT / 2.0;
     let group = group
-        .add(edged(case, DARK, 1.5))
+        .add(outlined(case, DARK, 1.5))
         .add(line(
             (COMPONENT_PINS_X, y),
             (COMPONENT_PINS_X + 16.0, y),
@@ -101,7 +102,7 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
             DARK,
             THIN_WIDTH,
         ))
-        .add(edged(
+        .add(outlined(
             circle((COMPONENT_PINS_X + 20.0, middle), 8.0, "white"),
             DARK,
             1.5,
@@ -128,7 +129,7 @@ fn draw_obstacle_switch(group: Group, pin: u8, y: f64) -> Group {
         "#e6eef7",
     )
     .set("rx", 5);
-    let group = group.add(edged(case, DARK, 1.5));
+    let group = group.add(outlined(case, DARK, 1.5));
     let group = draw_wire(
         group,
         [

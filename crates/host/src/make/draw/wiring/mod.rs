@@ -17,8 +17,8 @@ use super::route::{Path, WIRE_SPACING, path_end, paths_between_rows, turn_point}
 use super::uno::Uno;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    BROWN, DARK, GREY, ORANGE, PLACES, RED, SERVO, circle, cross, edged, line, page, rectangle,
-    text_middle, text_start,
+    BROWN, DARK, GREY, ORANGE, RED, SERVO_COLOURS, SERVO_PLACES, circle, cross, line, outlined,
+    rectangle, svg_page, text_middle, text_start,
 };
 use wire::{BLACK, THICK_WIDTH, THIN_WIDTH, Wire, draw_terminal};
 
@@ -93,7 +93,7 @@ pub fn draw_wiring(robot: &Robot) -> String {
     if inputs::panel_height(robot) > 0.0 {
         group = group.add(inputs::draw(robot, inputs_y));
     }
-    page((PAGE_WIDTH, inputs_y + inputs::panel_height(robot)), group)
+    svg_page((PAGE_WIDTH, inputs_y + inputs::panel_height(robot)), group)
 }
 
 fn is_analogue(pin: u8) -> bool {
@@ -204,19 +204,19 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
 /// Draws a servo from above, with its name, its place in the robot and its pin; `index` counts from left to right.
 fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     let x = servo_x(index);
-    let colour = SERVO[servo];
+    let colour = SERVO_COLOURS[servo];
     let corner = (x - SERVO_SIZE.0 / 2.0, SERVO_TOP_Y);
     let name = SERVO_NAMES[servo];
     Group::new()
         .add(rectangle(corner, SERVO_SIZE, "white").set("rx", 5))
-        .add(edged(
+        .add(outlined(
             rectangle(corner, SERVO_SIZE, colour)
                 .set("rx", 5)
                 .set("fill-opacity", 0.18),
             colour,
             2,
         ))
-        .add(edged(
+        .add(outlined(
             circle((x, SERVO_TOP_Y + 32.0), 15.0, "white"),
             colour,
             2,
@@ -224,7 +224,7 @@ fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
         .add(circle((x, SERVO_TOP_Y + 32.0), 5.0, DARK))
         .add(text_middle(name, (x, SERVO_TOP_Y + 72.0), 20.0).set("font-weight", "bold"))
         .add(text_start(
-            PLACES[servo],
+            SERVO_PLACES[servo],
             (x + 28.0, SERVO_TOP_Y + 28.0),
             12.0,
         ))

@@ -8,7 +8,7 @@ use svg::node::element::{Group, Polygon};
 
 use super::wire::{BLACK, LEG_WIDTH, THIN_WIDTH, Wire, draw_terminal};
 use crate::shared::ink::{
-    DARK, GREY, ORANGE, RED, circle, curve, edged, line, rectangle, text_end, text_middle,
+    DARK, GREY, ORANGE, RED, circle, curve, line, outlined, rectangle, text_end, text_middle,
     text_start,
 };
 
@@ -37,7 +37,7 @@ pub fn draw(top: f64) -> Group {
     let y_of = |row: usize| top + ROWS[row].2;
     let row_path = |row: usize, from: f64, to: f64| vec![(from, y_of(row)), (to, y_of(row))];
     let frame = rectangle((16.0, top), (668.0, PANEL_HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
-    let frame = edged(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
+    let frame = outlined(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
     let divider_path = vec![(DIVIDER_X, y_of(1)), (DIVIDER_X, y_of(2))];
     let wires = [
         Wire::new(
@@ -112,7 +112,7 @@ pub fn draw(top: f64) -> Group {
             13.0,
         ));
     let module = rectangle((MODULE_PINS_X, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
-    group = group.add(edged(module, DARK, 1.5)).add(text_end(
+    group = group.add(outlined(module, DARK, 1.5)).add(text_end(
         "HM-10, HC-05",
         (MODULE_PINS_X + 142.0, top + 126.0),
         13.0,
@@ -167,5 +167,5 @@ fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
 fn draw_resistor(group: Group, (x, y): (f64, f64), (width, height): (f64, f64)) -> Group {
     let corner = (x - width / 2.0, y - height / 2.0);
     let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
-    group.add(edged(body, DARK, 1.5))
+    group.add(outlined(body, DARK, 1.5))
 }

@@ -8,7 +8,7 @@ use svg::node::element::Group;
 use super::wire::{BLACK, LEG_WIDTH, THICK_WIDTH, Wire, draw_terminal};
 use crate::make::draw::route::Path;
 use crate::shared::ink::{
-    DARK, ORANGE, RED, circle, edged, line, rectangle, text_middle, text_start,
+    DARK, ORANGE, RED, circle, line, outlined, rectangle, text_middle, text_start,
 };
 
 /// Pixels between neighbouring ways of the upright strips.
@@ -161,7 +161,7 @@ pub fn draw_resistor_bodies() -> Group {
         let (width, height) = (22.0, 9.0);
         let corner = (x - width / 2.0, SIGNAL_EDGES_Y.1 + y_offset - height / 2.0);
         let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
-        group = group.add(edged(body, DARK, 1.5));
+        group = group.add(outlined(body, DARK, 1.5));
     }
     let point = (signal_way_x(4) + 22.0, SIGNAL_EDGES_Y.1 + 31.0);
     group
@@ -183,7 +183,7 @@ fn draw_way(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Gr
 }
 
 fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectangle {
-    edged(rectangle(corner, size, "#f2f2f2").set("rx", 4), DARK, 1.3)
+    outlined(rectangle(corner, size, "#f2f2f2").set("rx", 4), DARK, 1.3)
 }
 
 /// Draws the three strips.

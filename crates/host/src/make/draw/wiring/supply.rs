@@ -7,7 +7,7 @@ use svg::node::element::Group;
 use super::strips::{ground_hole, supply_hole};
 use super::wire::{BLACK, GREY_WIRE, LEG_WIDTH, THICK_WIDTH, THIN_WIDTH, Wire, draw_terminal};
 use crate::make::draw::route::Path;
-use crate::shared::ink::{DARK, RED, edged, line, rectangle, text_end, text_middle, text_start};
+use crate::shared::ink::{DARK, RED, line, outlined, rectangle, text_end, text_middle, text_start};
 
 type Point = (f64, f64);
 
@@ -203,7 +203,11 @@ fn capacitor_legs() -> [Point; 2] {
 }
 
 fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
-    group.add(edged(rectangle(corner, size, fill).set("rx", 5), DARK, 1.5))
+    group.add(outlined(
+        rectangle(corner, size, fill).set("rx", 5),
+        DARK,
+        1.5,
+    ))
 }
 
 /// Draws all parts of the supply; `socket` is the middle of the board's round socket.
@@ -296,7 +300,7 @@ fn draw_battery(group: Group) -> Group {
     }
     // The plug that disconnects both wires.
     for y in [PLUS_Y, BATTERY_MINUS_Y] {
-        group = group.add(edged(
+        group = group.add(outlined(
             rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808"),
             DARK,
             1.0,

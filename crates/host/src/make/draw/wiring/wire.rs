@@ -6,7 +6,7 @@
 use svg::node::element::{Circle, Group};
 
 use crate::make::draw::route::Path;
-use crate::shared::ink::{circle, curve, edged};
+use crate::shared::ink::{circle, curve, outlined};
 
 /// The colour of black wires.
 pub const BLACK: &str = "#1b1b1b";
@@ -49,5 +49,5 @@ impl Wire {
 
 /// Draws a terminal, at which a wire ends.
 pub fn draw_terminal(name: &str, point: (f64, f64), colour: &str) -> Circle {
-    edged(circle(point, 4.5, "#e9e4d8"), colour, 2.0).set("id", format!("end-{name}"))
+    outlined(circle(point, 4.5, "#e9e4d8"), colour, 2.0).set("id", format!("end-{name}"))
 }

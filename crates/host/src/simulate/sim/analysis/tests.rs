@@ -3,7 +3,7 @@
 use super::*;
 
 fn paper_robot() -> Robot {
-    crate::shared::robot_file::named("paper")
+    crate::shared::robot_file::built_in_robot("paper")
 }
 
 /// Frames with the pulses for `angles(seconds)`; the first one is at 1 s.

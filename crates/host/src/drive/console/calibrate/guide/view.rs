@@ -2,7 +2,7 @@
 
 use std::io::{Read, Write};
 
-use crate::shared::ink::PLACES;
+use crate::shared::ink::SERVO_PLACES;
 
 use super::step::{STEPS, Step};
 use super::{Guide, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
@@ -23,7 +23,7 @@ pub struct View {
 impl<P: Read + Write> Guide<'_, P> {
     /// The screen for the current step.
     pub fn view(&self) -> View {
-        let servo_name = |index: usize| format!("A{}, {}", index + 1, PLACES[index]);
+        let servo_name = |index: usize| format!("A{}, {}", index + 1, SERVO_PLACES[index]);
         let next_keys = "Enter: next    b: back    q: cancel, nothing is saved";
         let (title, text, keys): (String, String, &str) = match self.step() {
             Step::Begin => (
