@@ -11,7 +11,7 @@ use shell::Shell;
 #[test]
 fn ctrl_c_ends_a_command_that_reads_and_prints() {
     let mut shell = Shell::start("cat", &[], &[]);
-    shell.say("a line");
+    shell.type_line("a line");
     LIMIT.expect("the printed line", || shell.screen() == "a line\n");
     assert!(!shell.has_ended());
     shell.interrupt();

@@ -41,10 +41,10 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     desk.assert_written(expected_uno.flash());
 
     // Waits until all four servos are awake, then walks two steps.
-    shell.say("stand");
+    shell.type_line("stand");
     desk.wait_for_text(&shell, "ok stand");
     run_frames(&mut desk, AWAKE_FRAMES);
-    shell.say("walk");
+    shell.type_line("walk");
     desk.wait_for_text(&shell, "ok walk");
     desk.edges.clear();
     run_frames(&mut desk, 110);
@@ -99,13 +99,13 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
     let mut shell = start_make_flash(&desk);
     desk.wait_for_text(&shell, "# lizard");
     for line in ["trim 1 3", "deadman 700", "save"] {
-        shell.say(line);
+        shell.type_line(line);
         desk.wait_for_text(&shell, &format!("ok {line}"));
     }
     shell.interrupt();
     let mut shell = start_make_flash(&desk);
     desk.wait_for_text(&shell, "# lizard");
-    shell.say("cal");
+    shell.type_line("cal");
     desk.wait_for_text(&shell, "ok cal");
     let screen = shell.screen();
     assert!(screen.contains("# A1 trim 3.00 "), "{screen}");

@@ -9,10 +9,11 @@ use lizard_host_tests::judge::{
     run_own_tests,
 };
 use lizard_host_tests::{FirmwareBench, robot};
+use lizard_robot::CheckedGait;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
 
-/// Returns a standing robot on the simulated UNO, which has recorded everything since power-on.
-fn wake_robot() -> FirmwareBench {
+/// Returns a bench whose robot stands. The bench has recorded all outputs since power-on.
+fn standing_bench() -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.run_ms(1000);
     bench
@@ -20,8 +21,7 @@ fn wake_robot() -> FirmwareBench {
 
 /// Returns the commands for all gaits.
 fn gait_commands() -> Vec<String> {
-    let names = robot().gaits().iter().map(|gait| gait.name());
-    names.map(|name| name.replace('-', " ")).collect()
+    robot().gaits().iter().map(CheckedGait::command).collect()
 }
 
 /// The allowed difference in time between the outputs of two consoles.
@@ -38,42 +38,45 @@ enum TimeTolerance {
     Any,
 }
 
-/// Upper bound of the cycles of one iteration of main's loop. An iteration computes a frame, in at most 12 000 cycles,
-/// and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator and just after
-/// the start of this iteration in the other, main notices it one iteration later in the other.
+/// The upper bound of the cycles of one iteration of main's loop. An iteration computes a frame, in at most
+/// 12 000 cycles, and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator
+/// and just after the start of this iteration in the other, main notices this one iteration later in the other.
 const MAX_LOOP_CYCLES: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and checks that pulses, console and EEPROM agree.
 fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTolerance) {
     let end_cycle = bench.uno.cycle();
     let edges = bench.uno.edges();
-    let simavr = Outputs::new(&edges, bench.bytes(), end_cycle);
-    let received = bench.uno.received_by_uno();
+    let simavr_outputs = Outputs::new(&edges, bench.bytes(), end_cycle);
+    let received_bytes = bench.uno.received_by_uno();
     let avr8js = unwrap_or_panic(run_on_avr8js(
         &FirmwareBench::image(),
-        &received,
+        &received_bytes,
         end_cycle,
         robot(),
     ));
-    let pulses = compare_pulses(&simavr, &avr8js.outputs, &servo_pins(robot()));
-    let pulses = pulses.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
+    let pulse_agreement = compare_pulses(&simavr_outputs, &avr8js.outputs, &servo_pins(robot()));
+    let pulse_agreement =
+        pulse_agreement.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
     assert_eq!(
-        pulses.offset_cycles, AVR8JS_LAG_CYCLES,
+        pulse_agreement.offset_cycles, AVR8JS_LAG_CYCLES,
         "{case_name}: the pulses' cycle in the slot"
     );
-    let max_cycles = match tolerance {
+    let max_jitter_cycles = match tolerance {
         TimeTolerance::Cycles => Some(2),
         TimeTolerance::LoopIteration => Some(MAX_LOOP_CYCLES),
         TimeTolerance::Any => None,
     };
-    if let Some(max_cycles) = max_cycles {
-        let console = compare_console(&simavr, &avr8js.outputs);
-        let console = console.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
+    if let Some(max_jitter_cycles) = max_jitter_cycles {
+        let console_agreement = compare_console(&simavr_outputs, &avr8js.outputs);
+        let console_agreement =
+            console_agreement.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
         assert!(
-            console.offset_cycles.abs() <= 1 && console.jitter_cycles <= max_cycles,
-            "{case_name}: the console's times differ: {console:?}"
+            console_agreement.offset_cycles.abs() <= 1
+                && console_agreement.jitter_cycles <= max_jitter_cycles,
+            "{case_name}: the console's times differ: {console_agreement:?}"
         );
-        println!("{case_name}: {console}");
+        println!("{case_name}: {console_agreement}");
     }
     let eeprom = bench.uno.eeprom();
     let differing_address = eeprom.iter().zip(&avr8js.eeprom).position(|(a, b)| a != b);
@@ -82,8 +85,8 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
         "{case_name}: the EEPROMs differ at this address"
     );
     println!(
-        "{case_name}: {} bytes received, {pulses}; {:.1} s in {} ms of processor time",
-        received.len(),
+        "{case_name}: {} bytes received, {pulse_agreement}; {:.1} s in {} ms of processor time",
+        received_bytes.len(),
         end_cycle as f64 / (1000 * CYCLES_PER_MS) as f64,
         avr8js.cpu_ms
     );
@@ -95,7 +98,7 @@ fn unwrap_or_panic<T>(result: Result<T, String>) -> T {
 
 #[test]
 fn two_simulators_agree_about_every_pulse_of_every_gait() {
-    let mut bench = wake_robot();
+    let mut bench = standing_bench();
     for line in gait_commands() {
         bench.say(&line);
         bench.run_ms(2000);
@@ -108,7 +111,7 @@ fn two_simulators_agree_about_every_pulse_of_every_gait() {
 
 #[test]
 fn two_simulators_agree_about_saved_settings() {
-    let mut bench = wake_robot();
+    let mut bench = standing_bench();
     for line in ["trim 1 3", "save", "trim 2 -2.5", "save", "rest"] {
         bench.say(line);
         bench.run_ms(2_000);
@@ -150,7 +153,7 @@ fn two_simulators_agree_under_a_saturated_line() {
         for (flood, tolerance) in floods {
             let moving_gait = &moving_gait;
             scope.spawn(move || {
-                let mut bench = wake_robot();
+                let mut bench = standing_bench();
                 bench.say("watch 1");
                 bench.say(moving_gait);
                 bench.uno.flood(flood.as_bytes());

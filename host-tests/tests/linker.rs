@@ -1,11 +1,11 @@
-//! Tests that a program computes the same results after our linker has reordered its functions.
+//! Tests that a program computes the same results after `lizard-linker` has reordered its functions.
 
 use lizard_host_tests::avr_gcc::{compile_to_object, link};
 use lizard_linker::{ROUTINES, Savings, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Links a program twice: unchanged, and after our linker has shrunk it. Returns both images with their savings.
-fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
+/// Links a program twice: unchanged, and after `lizard-linker` has shrunk it. Returns both images with their savings.
+fn link_plain_and_shrunk(program: &str) -> [(Image, Savings); 2] {
     let object = compile_to_object(program).expect("the program compiles");
     let (shrunk, savings) = shrink(&object)
         .expect("the object is valid")
@@ -15,7 +15,7 @@ fn link_both_ways(program: &str) -> [(Image, Savings); 2] {
 }
 
 /// Returns the address of a variable in RAM.
-fn address_of(image: &Image, name: &str) -> u16 {
+fn ram_address(image: &Image, name: &str) -> u16 {
     let symbol = image.symbol(name);
     (symbol.expect("the variable exists").address - 0x80_0000) as u16
 }
@@ -25,7 +25,7 @@ fn run_to_end(image: &Image) -> Uno {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(100);
     assert_eq!(
-        uno.peek(address_of(image, "done")),
+        uno.peek(ram_address(image, "done")),
         1,
         "the program ends, and a timer has interrupted it"
     );
@@ -86,13 +86,14 @@ fn expected_sum() -> u16 {
 
 fn run_for_result(image: &Image) -> u16 {
     let uno = run_to_end(image);
-    let result_address = address_of(image, "result");
+    let result_address = ram_address(image, "result");
     u16::from_le_bytes([uno.peek(result_address), uno.peek(result_address + 1)])
 }
 
 #[test]
 fn functions_in_another_order_compute_the_same_result_in_fewer_bytes() {
-    let [(plain_image, _), (shrunk_image, savings)] = link_both_ways(&program_with_far_calls(""));
+    let [(plain_image, _), (shrunk_image, savings)] =
+        link_plain_and_shrunk(&program_with_far_calls(""));
     assert_eq!(run_for_result(&plain_image), expected_sum());
     assert_eq!(run_for_result(&shrunk_image), expected_sum());
     // Main cannot be near all ten functions that it calls, but each of the ten can be near the function that it calls.
@@ -104,7 +105,7 @@ fn functions_in_another_order_compute_the_same_result_in_fewer_bytes() {
 
 #[test]
 fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
-    // The function `upper` has no return, has a return that may be skipped, or has a relative jump to `lower`.
+    // The function `upper` ends without a return, with a return that may be skipped, or with a jump to `lower`.
     for ending in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {
         let extra_code = format!(
             r#"asm(
@@ -117,7 +118,7 @@ fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
         let program = program_with_far_calls(&extra_code)
             .replace("sum = f9(sum);", "sum = f9(sum) + upper(sum);");
         let mut results = Vec::new();
-        for (image, savings) in link_both_ways(&program) {
+        for (image, savings) in link_plain_and_shrunk(&program) {
             assert_eq!(savings.calls, 0, "{ending}: {savings:?}");
             let symbol_of = |name| image.symbol(name).expect("the symbol exists");
             let upper = symbol_of("upper");

@@ -37,8 +37,8 @@ const CRATES: [&str; 23] = [
 /// docs/structure.md calls them rooms.
 const CORE_LAYERS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
-/// Folders whose `mod.rs` counts as another module, so that it may not be part of a cycle either. Each is a crate and a
-/// path prefix.
+/// Folders whose `mod.rs` counts as a separate module, which must not be part of a cycle either. Each folder is a crate
+/// and a path prefix.
 const FOLDERS_WITH_ROOT_FILE: [(&str, &str); 2] = [
     ("crates/host", "crate::"),
     ("crates/host", "crate::commands::"),
@@ -50,15 +50,16 @@ type Uses = BTreeMap<String, BTreeSet<String>>;
 #[test]
 fn no_modules_use_each_other_in_a_cycle() {
     let mut use_count = 0;
-    for name in CRATES {
-        for folder in folders(&root().join(name).join("src")) {
-            let uses = folder.uses(FOLDERS_WITH_ROOT_FILE.contains(&(name, &folder.path)));
+    for crate_path in CRATES {
+        for folder in folders(&root().join(crate_path).join("src")) {
+            let uses =
+                folder.uses(FOLDERS_WITH_ROOT_FILE.contains(&(crate_path, &folder.path_prefix)));
             use_count += uses.values().map(BTreeSet::len).sum::<usize>();
-            let cyclic_modules = find_cycles(uses);
+            let cyclic_modules = find_cyclic_modules(uses);
             assert!(
                 cyclic_modules.is_empty(),
-                "{name}, {}: these modules use each other in a cycle: {cyclic_modules:?}",
-                folder.path
+                "{crate_path}, {}: these modules use each other in a cycle: {cyclic_modules:?}",
+                folder.path_prefix
             );
         }
     }
@@ -71,14 +72,13 @@ fn no_modules_use_each_other_in_a_cycle() {
 #[test]
 fn a_layer_of_the_core_uses_only_layers_below_it() {
     let core = folders(&root().join("crates/core/src")).remove(0);
-    for (layer, used_layers) in core.uses(false) {
-        if let Some(index) = CORE_LAYERS.iter().position(|name| *name == layer) {
-            for other_layer in used_layers {
-                assert!(
-                    CORE_LAYERS[index..].contains(&other_layer.as_str()),
-                    "{layer} uses {other_layer}, which is not below it"
-                );
-            }
+    let uses = core.uses(false);
+    for (index, layer) in CORE_LAYERS.into_iter().enumerate() {
+        for other_layer in &uses[layer] {
+            assert!(
+                CORE_LAYERS[index..].contains(&other_layer.as_str()),
+                "{layer} uses {other_layer}, which is not below it"
+            );
         }
     }
 }
@@ -91,7 +91,7 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
         lines.iter().map(uses_of_line).collect()
     };
     let chain = uses_of(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
-    assert!(find_cycles(chain).is_empty());
+    assert!(find_cyclic_modules(chain).is_empty());
     let cycle = uses_of(&[
         ("above", &["a"]),
         ("a", &["b"]),
@@ -99,7 +99,7 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
         ("c", &["a", "below"]),
         ("below", &[]),
     ]);
-    assert_eq!(find_cycles(cycle), ["a", "b", "c"]);
+    assert_eq!(find_cyclic_modules(cycle), ["a", "b", "c"]);
 }
 
 #[test]
@@ -113,19 +113,19 @@ fn super_is_read_as_the_path_of_the_module_above_and_the_items_of_a_root_file_ar
     assert_eq!(item_names(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
-/// Returns the modules that are part of a cycle or lie between two cycles: those that remain after every module that
-/// uses no other, or that no other uses, is removed repeatedly.
-fn find_cycles(mut uses: Uses) -> Vec<String> {
+/// Repeatedly removes every module that uses no other module or that no other module uses. Returns the remaining
+/// modules, which are part of a cycle or lie between two cycles.
+fn find_cyclic_modules(mut uses: Uses) -> Vec<String> {
     loop {
         let previous_count = uses.len();
-        let used: BTreeSet<String> = uses.values().flatten().cloned().collect();
-        uses.retain(|name, others| !others.is_empty() && used.contains(name));
-        let remaining: BTreeSet<String> = uses.keys().cloned().collect();
+        let used_modules: BTreeSet<String> = uses.values().flatten().cloned().collect();
+        uses.retain(|name, others| !others.is_empty() && used_modules.contains(name));
+        let remaining_modules: BTreeSet<String> = uses.keys().cloned().collect();
         for others in uses.values_mut() {
-            others.retain(|other| remaining.contains(other));
+            others.retain(|other| remaining_modules.contains(other));
         }
         if uses.len() == previous_count {
-            return remaining.into_iter().collect();
+            return remaining_modules.into_iter().collect();
         }
     }
 }
@@ -133,7 +133,7 @@ fn find_cycles(mut uses: Uses) -> Vec<String> {
 /// A folder of modules: a crate, or a module with submodules.
 struct Folder {
     /// The path prefix of the modules' names, for example `crate::` or `crate::measures::`.
-    path: String,
+    path_prefix: String,
     /// The text of the file that declares the modules, without comments and tests.
     root_text: String,
     /// The directory that holds the modules' files.
@@ -141,22 +141,22 @@ struct Folder {
 }
 
 /// Returns all folders of modules of a crate, the crate itself first.
-fn folders(source: &Path) -> Vec<Folder> {
+fn folders(source_directory: &Path) -> Vec<Folder> {
     let mut all_folders = vec![Folder {
-        path: "crate::".to_owned(),
-        root_text: read_code(&source.join("lib.rs")),
-        directory: source.to_owned(),
+        path_prefix: "crate::".to_owned(),
+        root_text: read_code(&source_directory.join("lib.rs")),
+        directory: source_directory.to_owned(),
     }];
     let mut next_index = 0;
     while let Some(folder) = all_folders.get(next_index) {
         let inner_folders = folder.modules().into_iter().filter_map(|module| {
             let module_folder = folder.directory.join(module);
-            let root = read_code(&module_folder.join("mod.rs"))
+            let root_text = read_code(&module_folder.join("mod.rs"))
                 + &read_code(&module_folder.with_extension("rs"));
-            let path = format!("{}{module}::", folder.path);
+            let path_prefix = format!("{}{module}::", folder.path_prefix);
             module_folder.is_dir().then_some(Folder {
-                path,
-                root_text: root,
+                path_prefix,
+                root_text,
                 directory: module_folder,
             })
         });
@@ -172,12 +172,12 @@ impl Folder {
         self.root_text.lines().filter_map(declared_module).collect()
     }
 
-    /// Returns the uses among the folder's modules. A module and its submodules count as one module, and `mod.rs` as
-    /// another if `with_root` is true. Tests do not count.
-    fn uses(&self, with_root: bool) -> Uses {
+    /// Returns the uses among the folder's modules. A module and its submodules count as one module. If
+    /// `includes_root_file` is true, `mod.rs` counts as another module. Tests do not count.
+    fn uses(&self, includes_root_file: bool) -> Uses {
         let modules = self.modules();
-        // `crate::Name` uses the module from which the folder's root file exports the name.
-        let mut modules_by_name: BTreeMap<&str, &str> =
+        // A use of `crate::Name` counts as a use of the module from which the root file exports this name.
+        let mut module_by_name: BTreeMap<&str, &str> =
             modules.iter().map(|name| (*name, *name)).collect();
         for export in self
             .root_text
@@ -187,12 +187,12 @@ impl Folder {
             if let Some((module_name, names)) = export.1.split_once("::")
                 && let Some(module_name) = modules.get(module_name)
             {
-                modules_by_name.extend(words_in(names).map(|name| (name, *module_name)));
+                module_by_name.extend(words_in(names).map(|name| (name, *module_name)));
             }
         }
         let mut uses = Uses::new();
-        if with_root {
-            modules_by_name.extend(item_names(&self.root_text).map(|name| (name, ROOT_FILE)));
+        if includes_root_file {
+            module_by_name.extend(item_names(&self.root_text).map(|name| (name, ROOT_FILE)));
             let used = modules
                 .iter()
                 .filter(|module| self.root_text.contains(&format!("{module}::")));
@@ -203,8 +203,10 @@ impl Folder {
         }
         for module in &modules {
             let module_folder = self.directory.join(module);
-            let mut text =
-                resolve_super(&read_code(&module_folder.with_extension("rs")), &self.path);
+            let mut text = resolve_super(
+                &read_code(&module_folder.with_extension("rs")),
+                &self.path_prefix,
+            );
             for path in source_files(&module_folder) {
                 let relative_path = path
                     .strip_prefix(&self.directory)
@@ -218,11 +220,14 @@ impl Folder {
                     .iter()
                     .map(|name| format!("{name}::"))
                     .collect();
-                text += &resolve_super(&read_code(&path), &format!("{}{parent_path}", self.path));
+                text += &resolve_super(
+                    &read_code(&path),
+                    &format!("{}{parent_path}", self.path_prefix),
+                );
             }
-            let used = names_after(&text, &self.path).into_iter();
+            let used = names_after(&text, &self.path_prefix).into_iter();
             let others = used
-                .filter_map(|name| modules_by_name.get(name))
+                .filter_map(|name| module_by_name.get(name))
                 .filter(|other| *other != module);
             uses.insert(
                 module.to_string(),

@@ -5,7 +5,7 @@ use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 
-/// The pins of the example's servos, in its order.
+/// The pins of the example's servos, in the order of the example.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
 /// Returns the width of a servo's pulse in a frame, cycles, according to the example's description: the width rises
@@ -23,7 +23,7 @@ fn load_sweep_example(fidelity: Fidelity) -> Uno {
 }
 
 #[test]
-fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
+fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
     for fidelity in [Fidelity::DataSheet, Fidelity::Stock] {
         let mut uno = load_sweep_example(fidelity);
         uno.run_ms(50);
@@ -35,38 +35,41 @@ fn eight_servos_are_exact_to_the_cycle_beside_a_flood_of_echoed_bytes() {
         uno.run_ms(10_000);
         assert_eq!(*uno.state(), State::Alive);
         let edges = uno.edges();
-        let frame_length = u64::from(frame_cycles(8));
+        let frame_length_cycles = u64::from(frame_cycles(8));
         let servo_edges = edges.iter().filter(|edge| edge.pin != Pin::d(13));
         let servo_edges: Vec<_> = servo_edges.copied().collect();
         assert_eq!(most_pins_high(&servo_edges), 1, "one servo at a time");
         // The first two or three frames are not among the edges.
         let first_width = uno.pulses(Pin::arduino(PINS[0]))[0].width;
-        let skipped_frames = (0..10)
-            .find(|n| expected_width(0, *n) == first_width)
+        let skipped_frame_count = (0..10)
+            .find(|frame| expected_width(0, *frame) == first_width)
             .expect("one of the first ten frames");
         for (servo, pin) in PINS.into_iter().enumerate() {
             let pulses = uno.pulses(Pin::arduino(pin));
             assert!(pulses.len() > 880, "{} of {pin}", pulses.len());
-            for (n, pulse) in pulses.iter().enumerate() {
-                let expected = expected_width(servo as u64, skipped_frames + n as u64);
-                assert_eq!(pulse.width, expected, "{fidelity:?}, pin {pin}, frame {n}");
+            for (frame, pulse) in pulses.iter().enumerate() {
+                let expected = expected_width(servo as u64, skipped_frame_count + frame as u64);
+                assert_eq!(
+                    pulse.width, expected,
+                    "{fidelity:?}, pin {pin}, frame {frame}"
+                );
             }
             for pair in pulses.windows(2) {
                 // The rising edges are exactly one frame apart.
                 assert_eq!(
                     pair[1].start - pair[0].start,
-                    frame_length,
+                    frame_length_cycles,
                     "{fidelity:?}, pin {pin}"
                 );
             }
         }
         let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
-        // The line was full in both directions. Stock simavr sends more slowly than it receives, so only the simulation
-        // by the data sheet loses no bytes.
+        // The serial line was full in both directions. Stock simavr sends more slowly than it receives, so it loses
+        // bytes. The simulation by the data sheet loses none.
         if fidelity == Fidelity::DataSheet {
             assert!(echo.len() > 115_000, "{} bytes", echo.len());
-            let sent: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
-            let wrong_index = (0..echo.len()).find(|n| echo[*n] != sent[*n]);
+            let expected_echo: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
+            let wrong_index = (0..echo.len()).find(|index| echo[*index] != expected_echo[*index]);
             assert_eq!(wrong_index, None, "the first wrong byte of the echo");
             assert_eq!((uno.overruns(), uno.bytes_sent()), (0, echo.len() as u64));
         } else {
@@ -91,7 +94,7 @@ fn the_led_blinks_every_sixteen_frames() {
 fn the_costs_in_the_readme_equal_those_of_the_example() {
     let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(100);
-    let interrupt_cycles = |uno: &Uno| {
+    let count_interrupt_cycles = |uno: &Uno| {
         let interrupts = uno.interrupts();
         let cycles_of = |vector| {
             interrupts
@@ -99,11 +102,11 @@ fn the_costs_in_the_readme_equal_those_of_the_example() {
                 .find(|interrupt| interrupt.vector == vector)
                 .map_or(0, |interrupt| interrupt.cycles)
         };
-        cycles_of(11) + cycles_of(12)
+        cycles_of(11) + cycles_of(12) // TIMER1_COMPA and TIMER1_COMPB
     };
-    let cycles_before = interrupt_cycles(&uno);
+    let cycles_before = count_interrupt_cycles(&uno);
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
-    let cycles_per_frame = (interrupt_cycles(&uno) - cycles_before) as f64 / 100.0;
+    let cycles_per_frame = (count_interrupt_cycles(&uno) - cycles_before) as f64 / 100.0;
     let readme =
         std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("the README exists");
     let cells_of_row = |name: &str| -> Vec<String> {
@@ -119,7 +122,7 @@ fn the_costs_in_the_readme_equal_those_of_the_example() {
         cell.parse::<f64>()
             .unwrap_or_else(|_| panic!("{cell} is a number"))
     };
-    // The tolerance is 2 %, because another compiler may save a few bytes.
+    // The tolerance is 2 %, because another version of the compiler may save a few bytes.
     let assert_near = |name: &str, measured: f64| {
         let stated_value = parse_number(&cells_of_row(name)[2]);
         let error = (measured - stated_value).abs();
@@ -143,5 +146,5 @@ fn the_costs_in_the_readme_equal_those_of_the_example() {
 #[test]
 fn the_limits_of_a_pulses_width_are_far_beyond_a_servos_travel() {
     assert!(u32::from(MIN_WIDTH_CYCLES) <= 16 * 400);
-    assert!((1..=8).all(|servos| u32::from(max_width_cycles(servos)) >= 16 * 2_400));
+    assert!((1..=8).all(|servo_count| u32::from(max_width_cycles(servo_count)) >= 16 * 2_400));
 }

@@ -1,5 +1,5 @@
-//! Tests of the stack depth that is computed from machine code. It is compared with the known and the measured depth of
-//! programs.
+//! Tests of the stack depth that is computed from machine code. They compare the computed depth of programs with the
+//! known and the measured depth.
 
 use lizard_host::bench::{StackDepth, StackError};
 use lizard_host_tests::avr_gcc::{assemble, compile_c};
@@ -54,14 +54,14 @@ fn pushes_and_calls_are_added_up_along_the_deepest_path() {
 
 #[test]
 fn small_and_large_stack_frames_and_jumps_at_the_end_of_a_function_are_counted() {
-    for bytes in [1u16, 20, 63, 64, 300] {
-        let reserve = match bytes {
-            0..64 => format!("sbiw r28, {bytes}"),
-            _ => format!("subi r28, lo8({bytes}) $ sbci r29, hi8({bytes})"),
+    for frame_bytes in [1u16, 20, 63, 64, 300] {
+        let reserve = match frame_bytes {
+            0..64 => format!("sbiw r28, {frame_bytes}"),
+            _ => format!("subi r28, lo8({frame_bytes}) $ sbci r29, hi8({frame_bytes})"),
         };
-        let release = match bytes {
-            0..64 => format!("adiw r28, {bytes}"),
-            _ => format!("subi r28, lo8(-{bytes}) $ sbci r29, hi8(-{bytes})"),
+        let release = match frame_bytes {
+            0..64 => format!("adiw r28, {frame_bytes}"),
+            _ => format!("subi r28, lo8(-{frame_bytes}) $ sbci r29, hi8(-{frame_bytes})"),
         };
         let set_pointer = "in r0, SREG $ cli $ out SPH, r29 $ out SREG, r0 $ out SPL, r28";
         let image = assemble(&format!(
@@ -78,8 +78,16 @@ fn small_and_large_stack_frames_and_jumps_at_the_end_of_a_function_are_counted()
         last: push r16 $ pop r16
         leaf: ret"
         ));
-        assert_eq!(depth_of(&image).max_depth(), 2 + 2 + bytes + 2, "{bytes}");
-        assert_eq!(measure_depth(&image), 2 + 2 + bytes + 2, "{bytes}");
+        assert_eq!(
+            depth_of(&image).max_depth(),
+            2 + 2 + frame_bytes + 2,
+            "{frame_bytes}"
+        );
+        assert_eq!(
+            measure_depth(&image),
+            2 + 2 + frame_bytes + 2,
+            "{frame_bytes}"
+        );
     }
 }
 
@@ -109,15 +117,15 @@ fn the_depth_of_compiled_c_is_an_upper_bound_near_the_measured_depth() {
         #include <avr/interrupt.h>
         static volatile unsigned char out;
         ISR(TIMER1_COMPA_vect) { out += TCNT1L; }
-        __attribute__((noinline)) static unsigned char sum(const volatile unsigned char *all) {
-            unsigned char s = 0;
-            for (unsigned char i = 0; i < 100; i++) s += all[i];
-            return s;
+        __attribute__((noinline)) static unsigned char sum(const volatile unsigned char *values) {
+            unsigned char total = 0;
+            for (unsigned char i = 0; i < 100; i++) total += values[i];
+            return total;
         }
         __attribute__((noinline)) static unsigned char fill(unsigned char n) {
-            volatile unsigned char all[100];
-            for (unsigned char i = 0; i < 100; i++) all[i] = n / (i + 1);
-            return sum(all);
+            volatile unsigned char values[100];
+            for (unsigned char i = 0; i < 100; i++) values[i] = n / (i + 1);
+            return sum(values);
         }
         int main(void) {
             OCR1A = 999; TIMSK1 = 2; TCCR1B = 9;
@@ -160,9 +168,9 @@ fn a_call_of_a_computed_address_is_refused_by_name() {
         "#include <avr/io.h>
         static void one(void) { GPIOR0 = 1; }
         static void two(void) { GPIOR0 = 2; }
-        static void (*volatile which)(void);
-        __attribute__((noinline)) void choose(void) { which(); GPIOR1 = 1; }
-        int main(void) { which = PINB ? one : two; for (;;) choose(); }",
+        static void (*volatile chosen)(void);
+        __attribute__((noinline)) void choose(void) { chosen(); GPIOR1 = 1; }
+        int main(void) { chosen = PINB ? one : two; for (;;) choose(); }",
     );
     let error = expect_refusal(&image).to_string();
     assert!(

@@ -1,5 +1,5 @@
-//! Tests with trouble at random moments of all activities. They play about a hundredth of the scenarios of
-//! `make trouble`.
+//! Tests with trouble at random moments of all activities. `make trouble` plays about a hundred times as many
+//! scenarios.
 
 use std::collections::BTreeSet;
 use std::thread;
@@ -8,13 +8,13 @@ use lizard_host_tests::trouble::{Activity, Scenario, play, run_campaign};
 use lizard_host_tests::{FirmwareBench, patrolling_robot, robot_with_patrol, root, seed};
 use lizard_robot::Robot;
 
-/// Number of scenarios. Of thirteen scenarios, four are drives, and each of the other nine activities has one.
+/// The number of scenarios. Of thirteen scenarios, four are drives, and each of the other nine activities has one.
 const SCENARIO_COUNT: u64 = 156;
 
 #[test]
 fn trouble_at_any_moment_breaks_no_rule() {
     let image = FirmwareBench::image_with(patrolling_robot());
-    let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
+    let thread_count = thread::available_parallelism().map_or(1, usize::from);
     let summary = run_campaign(
         &image,
         patrolling_robot(),
@@ -77,16 +77,16 @@ fn most_patrols_of_the_scenarios_reach_the_wait_for_a_wall() {
 fn a_robot_without_room_for_a_routine_patrols_with_fewer_gaits() {
     let mut text = std::fs::read_to_string(root().join("robot.toml")).expect("a robot.toml");
     let mut full_robot = Robot::parse(&text).expect("a robot");
-    for n in 0.. {
-        text += &format!("[gait.more-{n}]\nlike = \"walk\"\n");
+    for number in 0.. {
+        text += &format!("[gait.more-{number}]\nlike = \"walk\"\n");
         match Robot::parse(&text) {
             Ok(robot) => full_robot = robot,
             Err(_) => break,
         }
     }
     let text = text.rsplit_once("[gait.").expect("a gait").0;
-    let patrolling = robot_with_patrol(text).expect("room for a routine");
-    assert!(patrolling.gaits().len() < full_robot.gaits().len());
-    assert!(patrolling.gaits().len() > 5);
-    assert!(patrolling.routine("patrol").is_some());
+    let robot_with_fewer_gaits = robot_with_patrol(text).expect("room for a routine");
+    assert!(robot_with_fewer_gaits.gaits().len() < full_robot.gaits().len());
+    assert!(robot_with_fewer_gaits.gaits().len() > 5);
+    assert!(robot_with_fewer_gaits.routine("patrol").is_some());
 }

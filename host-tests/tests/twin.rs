@@ -16,7 +16,7 @@ fn walk_all_gaits(model: ServoModel) -> Replay {
     let mut ms = 1000;
     let mut steps = Vec::new();
     for gait in robot().gaits().iter().filter(|gait| gait.has_movement()) {
-        let command = gait.name().replace('-', " ");
+        let command = gait.command();
         steps.push(Step { ms, command });
         ms += 1000 + (3000.0 * gait.period()).ceil() as u64;
     }

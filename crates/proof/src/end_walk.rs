@@ -119,7 +119,7 @@ impl<'a> EndComparison<'a> {
         truth: &EndTruth,
         describe_place: impl Fn() -> String,
     ) {
-        tally.pairs += 1;
+        tally.pair_count += 1;
         let is_fixed_safe = self.accepts(margins);
         let EndMargins {
             type2,
@@ -129,11 +129,14 @@ impl<'a> EndComparison<'a> {
         // A pose whose couplers nearly fold is refused, whatever its other margins are.
         if truth.is_closed && truth.type2 > self.limits[0] - self.margin_band {
             Tally::raise(
-                &mut tally.type2,
+                &mut tally.max_type2_error,
                 (q15_to_sine(type2.0).abs() - truth.type2).abs(),
             );
             for (fixed, exact) in [type1_left, type1_right].into_iter().zip(truth.type1) {
-                Tally::raise(&mut tally.type1, (q15_to_sine(fixed.0) - exact).abs());
+                Tally::raise(
+                    &mut tally.max_type1_error,
+                    (q15_to_sine(fixed.0) - exact).abs(),
+                );
             }
         }
         let (margin_distance, crossing_distance) = truth.distances_from_limits(self.limits);

@@ -50,7 +50,7 @@ impl Proof {
     pub fn certified(&self) -> u64 {
         self.findings
             .iter()
-            .map(|finding| finding.tally.certified)
+            .map(|finding| finding.tally.certified_count)
             .sum()
     }
 
@@ -59,7 +59,7 @@ impl Proof {
     pub fn wrong(&self) -> u64 {
         self.findings
             .iter()
-            .map(|finding| finding.tally.wrong)
+            .map(|finding| finding.tally.wrong_count)
             .sum()
     }
 }

@@ -63,12 +63,12 @@ impl<'a> SideComparison<'a> {
                 let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
                 for lane in 0..count {
                     let column = eight[lane];
-                    tally.pairs += 1;
+                    tally.pair_count += 1;
                     let length_sq = self
                         .fixed
                         .length_sq(&crank, &to_side_frame(rear.fixed[column]));
                     let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
-                    Tally::raise(&mut tally.travel, (length - d[lane]).abs());
+                    Tally::raise(&mut tally.max_travel_error, (length - d[lane]).abs());
                     let is_allowed = self.fixed.allows(length_sq);
                     if self.cells.contains(front.sweep(row), rear.sweep(column)) {
                         tally.count_certified(is_allowed, || {
@@ -100,8 +100,11 @@ pub fn compare_leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> T
     let mut tally = Tally::default();
     let min_margin = guard.limits().leg.0;
     for (position, (fixed, exact)) in positions.fixed.iter().zip(&positions.exact).enumerate() {
-        tally.pairs += 1;
-        Tally::raise(&mut tally.leg, (q15_to_sine(fixed.sin) - exact.y).abs());
+        tally.pair_count += 1;
+        Tally::raise(
+            &mut tally.max_leg_error,
+            (q15_to_sine(fixed.sin) - exact.y).abs(),
+        );
         let clearance = exact.y - robot.limits().leg;
         if (fixed.sin >= min_margin) != (clearance >= 0.0) {
             tally.record_difference(false, clearance.abs(), MARGIN_BAND, || {

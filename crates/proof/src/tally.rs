@@ -27,25 +27,25 @@ pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// Pairs of positions checked.
-    pub pairs: u64,
+    pub pair_count: u64,
     /// The number of pairs in a cell of the robot's maps, each of which the guard must accept.
-    pub certified: u64,
+    pub certified_count: u64,
     /// Largest error of the type-2 margin, a sine.
-    pub type2: Option<f64>,
+    pub max_type2_error: Option<f64>,
     /// Largest error of a type-1 margin.
-    pub type1: Option<f64>,
+    pub max_type1_error: Option<f64>,
     /// Largest error of a leg's margin.
-    pub leg: Option<f64>,
+    pub max_leg_error: Option<f64>,
     /// Largest error of a slider's travel, mm.
-    pub travel: Option<f64>,
+    pub max_travel_error: Option<f64>,
     /// The largest distance from a margin's limit at which the decisions differ.
-    pub margin_band: Option<f64>,
+    pub max_margin_difference: Option<f64>,
     /// The largest distance from a limit of a slider's stroke, or from the crossing of the crank tips, at which the
     /// decisions differ, mm.
-    pub length_band: Option<f64>,
+    pub max_length_difference: Option<f64>,
     /// The number of pairs outside the bands that are decided wrong, plus the number of pairs in a cell that the
     /// guard refuses.
-    pub wrong: u64,
+    pub wrong_count: u64,
     /// A description of the first wrong pair.
     pub example: Option<String>,
 }
@@ -61,21 +61,21 @@ impl Tally {
 
     /// Combines two tallies: adds the counts, and keeps the larger errors and the first example.
     pub fn merged(mut self, other: Self) -> Self {
-        self.pairs += other.pairs;
-        self.certified += other.certified;
+        self.pair_count += other.pair_count;
+        self.certified_count += other.certified_count;
         for (largest, value) in [
-            (&mut self.type2, other.type2),
-            (&mut self.type1, other.type1),
-            (&mut self.leg, other.leg),
-            (&mut self.travel, other.travel),
-            (&mut self.margin_band, other.margin_band),
-            (&mut self.length_band, other.length_band),
+            (&mut self.max_type2_error, other.max_type2_error),
+            (&mut self.max_type1_error, other.max_type1_error),
+            (&mut self.max_leg_error, other.max_leg_error),
+            (&mut self.max_travel_error, other.max_travel_error),
+            (&mut self.max_margin_difference, other.max_margin_difference),
+            (&mut self.max_length_difference, other.max_length_difference),
         ] {
             if let Some(value) = value {
                 Self::raise(largest, value);
             }
         }
-        self.wrong += other.wrong;
+        self.wrong_count += other.wrong_count;
         self.example = self.example.or(other.example);
         self
     }
@@ -83,9 +83,9 @@ impl Tally {
     /// Counts a pair in a cell, as wrong if the guard refuses it.
     #[inline(always)]
     pub fn count_certified(&mut self, is_accepted: bool, describe_place: impl FnOnce() -> String) {
-        self.certified += 1;
+        self.certified_count += 1;
         if !is_accepted {
-            self.wrong += 1;
+            self.wrong_count += 1;
             self.example.get_or_insert_with(|| {
                 format!("{}: in a cell, but the guard refuses it", describe_place())
             });
@@ -103,13 +103,13 @@ impl Tally {
         example: impl FnOnce() -> String,
     ) {
         let widest = if is_length {
-            &mut self.length_band
+            &mut self.max_length_difference
         } else {
-            &mut self.margin_band
+            &mut self.max_margin_difference
         };
         Self::raise(widest, difference);
         if difference > band {
-            self.wrong += 1;
+            self.wrong_count += 1;
             self.example.get_or_insert_with(example);
         }
     }

@@ -42,7 +42,7 @@ pub use checks::{
     Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, PeakSpeed, SimulatedCycle, TableError,
 };
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
-pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform};
+pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, command_of};
 pub use lizard_contact::{
     Body, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, Ground, Joints, Motor, Motors, Place,
     Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,

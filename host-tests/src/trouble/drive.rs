@@ -7,7 +7,7 @@ use fastrand::Rng;
 use lizard_host::patrol::PATROL;
 use lizard_host::session::Session;
 use lizard_host::sim::tour;
-use lizard_robot::Robot;
+use lizard_robot::{Robot, command_of};
 use simulated_uno::{Radio, RadioLink, Uno, Wire};
 
 use super::record::{MS, Record, Span};
@@ -130,7 +130,7 @@ impl<'a> Drive<'a> {
     fn random_line(&mut self) -> String {
         let gaits = tour::moving_gaits(self.robot);
         let gait = self.rng.choice(&gaits).unwrap_or(&"stand");
-        let gait = gait.replace('-', " ");
+        let gait = command_of(gait);
         match self.rng.u8(..24) {
             0 | 1 => setup::random_pose(&mut self.rng, self.robot),
             2 | 3 => format!("speed {}", self.rng.u8(10..=100)),

@@ -9,7 +9,7 @@ use fastrand::Rng;
 use lizard_core::numbers::rate::BaudRate;
 use lizard_host::patrol::PATROL;
 use lizard_host::sim::tour;
-use lizard_robot::Robot;
+use lizard_robot::{Robot, command_of};
 use simulated_uno::RadioLink;
 
 use super::activity::Activity;
@@ -122,7 +122,7 @@ impl<'a> Script<'a> {
     fn random_gait(&mut self) -> String {
         let gaits = tour::moving_gaits(self.robot);
         let name = self.rng.choice(&gaits);
-        name.map_or("stand".into(), |name| name.replace('-', " "))
+        name.map_or("stand".into(), |name| command_of(name))
     }
 
     /// Starts an activity and waits until a random cycle of the activity.

@@ -31,8 +31,7 @@ fn random_line(rng: &mut Rng) -> String {
         0..7 => rng
             .choice(robot().gaits())
             .expect("every robot has `stand`")
-            .name()
-            .replace('-', " "),
+            .command(),
         7..9 => pose_near(rng, 15.0),
         9..11 => pose_near(rng, 45.0),
         11 => pose_near(rng, 100.0),

@@ -60,7 +60,7 @@ fn every_budget_is_met() {
 fn the_processor_is_awake_for_less_than_a_tenth_of_the_time_in_every_gait() {
     for fidelity in [Fidelity::Stock, Fidelity::DataSheet] {
         for gait in robot().gaits() {
-            let mut bench = boot_and_command(&gait.name().replace('-', " "), fidelity);
+            let mut bench = boot_and_command(&gait.command(), fidelity);
             let awake_before = bench.uno.awake_cycles();
             bench.run_ms(4000);
             let awake_cycles_per_frame =

@@ -28,7 +28,7 @@ const PACE_STEP: f64 = 147.0 / 1024.0;
 /// Starts a gait one second after power-on and returns the servo angles of each frame from then on, deg.
 fn record_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
     let mut bench = boot_standing(fidelity);
-    let line = gait.name().replace('-', " ");
+    let line = gait.command();
     assert_eq!(bench.say(&line), format!("ok {line}"));
     let frames = bench.run_for_frames(
         (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64 + 3 * FRAMES_PER_SECOND,

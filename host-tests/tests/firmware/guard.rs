@@ -261,11 +261,7 @@ fn no_frame_breaks_a_limit_under_random_commands() {
     for_each_in_parallel(&cases, |&(fidelity, seed)| {
         let mut rng = Rng::with_seed(seed);
         let mut bench = boot_standing(fidelity);
-        let lines: Vec<String> = robot()
-            .gaits()
-            .iter()
-            .map(|gait| gait.name().replace('-', " "))
-            .collect();
+        let lines: Vec<String> = robot().gaits().iter().map(|gait| gait.command()).collect();
         let mut frames = Vec::new();
         for _ in 0..150 {
             let line = if rng.u64(..3) == 0 {

@@ -12,6 +12,7 @@ use std::thread;
 
 use lizard_host::sim::tour;
 use lizard_host_tests::{FirmwareBench, Frame, robot};
+use lizard_robot::{CheckedGait, command_of};
 use simulated_uno::Fidelity;
 
 mod bad_input;
@@ -110,13 +111,12 @@ fn first_moving_gait() -> String {
     let first_gait = moving_gaits
         .first()
         .expect("a robot to be tested has a gait that moves");
-    first_gait.replace('-', " ")
+    command_of(first_gait)
 }
 
 /// Returns the commands for all gaits.
 fn gait_commands() -> Vec<String> {
-    let names = robot().gaits().iter().map(|gait| gait.name());
-    names.map(|name| name.replace('-', " ")).collect()
+    robot().gaits().iter().map(CheckedGait::command).collect()
 }
 
 /// Returns the command for the pose at these angles from neutral.

@@ -8,7 +8,7 @@ use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host::sim::tour;
 use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
 use lizard_host_tests::{FirmwareBench, rng};
-use lizard_robot::Robot;
+use lizard_robot::{Robot, command_of};
 use simulated_uno::Fidelity;
 
 use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
@@ -30,7 +30,7 @@ fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, message: &str) {
     bench.run_ms(1000);
     let first_rise = bench.first_pulse_cycle().expect("the robot stands");
     bench.say("watch 1");
-    bench.say(&gait.replace('-', " "));
+    bench.say(&command_of(gait));
     let received_count = bench.uno.received_by_uno().len();
     bench.uno.flood(flood.as_bytes());
     let sent_frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);

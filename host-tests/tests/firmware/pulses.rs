@@ -74,7 +74,7 @@ fn every_width_is_the_one_that_the_core_computes() {
                 let mut bench = boot_standing(*fidelity);
                 let first_rise = first_pulse_cycle(&bench);
                 bench.run_ms(delay_ms);
-                bench.say(&gait.name().replace('-', " "));
+                bench.say(&gait.command());
                 (bench, first_rise)
             };
             let is_away_from_ticks = |(bench, first_rise): &(FirmwareBench, u64)| {

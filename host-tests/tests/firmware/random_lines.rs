@@ -27,7 +27,7 @@ fn random_angle(rng: &mut Rng, servo: usize) -> String {
 fn random_line(rng: &mut Rng) -> String {
     let random_gait = |rng: &mut Rng| {
         let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
-        gait.name().replace('-', " ")
+        gait.command()
     };
     let index = rng.usize(..4);
     let servo = index + 1;

@@ -51,7 +51,7 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
         0..14 => {
             let gaits = robot.gaits();
             let gait = &gaits[random.next_below(gaits.len() as u64) as usize];
-            gait.name().replace('-', " ")
+            gait.command()
         }
         14..17 => pose_near(random, 2_000),
         17 => pose_near(random, 6_000),

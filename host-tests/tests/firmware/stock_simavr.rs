@@ -17,7 +17,7 @@ const TIMEOUT: Duration = Duration::from_secs(200);
 
 /// Returns the gait that the robot walks: the first after `stand`.
 fn first_gait() -> String {
-    robot().gaits()[1].name().replace('-', " ")
+    robot().gaits()[1].command()
 }
 
 /// Writes an EEPROM whose saved settings start the gait at power-on, as a HEX file.

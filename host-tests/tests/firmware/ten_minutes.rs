@@ -11,10 +11,7 @@ use simulated_uno::{Fidelity, State, Uno};
 
 /// Returns a script of ten minutes with every kind of line, accepted or refused, one line every `interval_ms`.
 fn script_of_all_lines(interval_ms: u64) -> Script {
-    let gaits = robot()
-        .gaits()
-        .iter()
-        .map(|gait| gait.name().replace('-', " "));
+    let gaits = robot().gaits().iter().map(|gait| gait.command());
     let mut lines: Vec<String> = gaits.collect();
     lines.extend(
         [

@@ -3,7 +3,7 @@
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{NamedRobot, robots};
 
-use crate::truth::degrees;
+use crate::truth::to_degrees;
 
 /// Steps of the core's angles in a degree.
 const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
@@ -19,7 +19,7 @@ fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
         );
         for (n, servo) in robot.servos().iter().enumerate() {
             let calibration = firmware.calibration()[n];
-            let neutral = degrees(firmware.neutral_angles()[n]);
+            let neutral = to_degrees(firmware.neutral_angles()[n]);
             assert!(
                 (neutral - servo.neutral % 360.0).abs() <= 0.5 / STEPS_PER_DEGREE,
                 "{name}: A{}",

@@ -12,7 +12,7 @@ use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::NamedRobot;
 use lizard_robot::{CheckedGait, Robot};
 
-use crate::truth::{Verdict, angles, is_safe, random_pose_within};
+use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
 /// Frames until all servos are awake.
 pub const WAKING_FRAMES: u32 = 20;
@@ -161,7 +161,7 @@ impl<'a> CheckedRobot<'a> {
     /// Returns the command for a pose. The console takes hundredths of a degree, so an angle of the commanded pose may
     /// be one step of 1/65536 turn away.
     pub fn pose_command(&self, pose: &Pose) -> String {
-        pose_command(angles(self.robot.firmware(), pose))
+        pose_command(chassis_angles_deg(self.robot.firmware(), pose))
     }
 
     /// Runs a number of frames.
@@ -187,7 +187,7 @@ impl<'a> CheckedRobot<'a> {
                 "{name}: the guard holds the last safe pose"
             );
         }
-        let chassis_angles = angles(robot.firmware(), &pose);
+        let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
         assert!(
             is_safe(robot.firmware(), &pose),
             "{name}: {chassis_angles:?}"
@@ -274,7 +274,7 @@ pub fn pose_command(angles: [f64; 4]) -> String {
 
 /// Returns the command that starts a gait.
 pub fn gait_command(gait: &CheckedGait) -> String {
-    gait.name().replace('-', " ")
+    gait.command()
 }
 
 /// Returns a random command that moves a robot, stops it or sets its speed.
@@ -282,7 +282,7 @@ pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
     let pose_line = |rng: &mut Rng, share: f64| {
         let firmware = robot.firmware();
         let pose = random_pose_within(rng, &firmware.calibration(), share);
-        pose_command(angles(firmware, &pose))
+        pose_command(chassis_angles_deg(firmware, &pose))
     };
     match rng.u8(..20) {
         0..9 => gait_command(&robot.gaits()[rng.usize(..robot.gaits().len())]),

@@ -7,7 +7,7 @@ use lizard_core::numbers::units::Sine;
 use lizard_host_tests::{NamedRobot, robots};
 use lizard_robot::Robot;
 
-use crate::truth::{MARGINS, sine, steps_per_mm};
+use crate::truth::{MARGINS, steps_per_mm, to_sine};
 
 /// Returns the limit of each of the ten margins from robot.toml.
 fn limits(robot: &Robot) -> [f64; 10] {
@@ -95,8 +95,11 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
             (core_limits.type1, file_limits.type1),
             (core_limits.leg, file_limits.leg),
         ] {
-            assert!(sine(core) >= file - 1e-9, "{name}: {core:?} for {file}");
-            assert!(sine(Sine(core.0 - 1)) < file, "{name}: {core:?} for {file}");
+            assert!(to_sine(core) >= file - 1e-9, "{name}: {core:?} for {file}");
+            assert!(
+                to_sine(Sine(core.0 - 1)) < file,
+                "{name}: {core:?} for {file}"
+            );
         }
         let sides = [
             lizard_kinematics::Side::Left,

@@ -12,8 +12,9 @@ use lizard_proof::STEPS_BAND;
 use lizard_robot::Robot;
 
 use crate::truth::{
-    ErrorStatistics, ExactConditions, FIVE_BAR_OF_MARGIN, MARGINS, MIN_TYPE2_LIMIT, angles,
-    index_of_open_five_bar, is_safe, random_pose, random_pose_within, sine, steps_per_mm,
+    ErrorStatistics, ExactConditions, FIVE_BAR_OF_MARGIN, MARGINS, MIN_TYPE2_LIMIT,
+    chassis_angles_deg, index_of_open_five_bar, is_safe, random_pose, random_pose_within,
+    steps_per_mm, to_sine,
 };
 
 /// Number of poses tested on each robot.
@@ -55,7 +56,7 @@ impl Findings {
                 self.hazard_counts[index] += 1;
             }
         }
-        let truth = match ExactConditions::of(robot, angles(firmware, pose)) {
+        let truth = match ExactConditions::of(robot, chassis_angles_deg(firmware, pose)) {
             Ok(truth) => truth,
             Err(fault) => {
                 // The guard checks the head first, so it may name an earlier condition.
@@ -113,7 +114,7 @@ impl Findings {
                 let max_margin = MIN_TYPE2_LIMIT + truth.bands[five_bar];
                 assert!(
                     truth.is_at_crossing(five_bar)
-                        || sine(clearance.margins[five_bar]) < max_margin,
+                        || to_sine(clearance.margins[five_bar]) < max_margin,
                     "{truth:?}"
                 );
                 continue;
@@ -123,15 +124,17 @@ impl Findings {
                 2..6 => &mut self.type1,
                 _ => &mut self.leg,
             };
-            let error = sine(*value) - expected;
+            let error = to_sine(*value) - expected;
             statistics.add(error);
             self.max_margin_error_bands[index] =
                 self.max_margin_error_bands[index].max(error.abs() / truth.bands[index]);
         }
-        for (side, (length_sq, travel)) in Side::ALL
-            .into_iter()
-            .zip(clearance.slider_lengths_sq.into_iter().zip(truth.travels))
-        {
+        for (side, (length_sq, travel)) in Side::ALL.into_iter().zip(
+            clearance
+                .slider_lengths_sq
+                .into_iter()
+                .zip(truth.travels_mm),
+        ) {
             let slider = robot.firmware().slider(side);
             let steps = f64::from(length_sq).sqrt() - f64::from(slider.nominal_length);
             self.stroke.add(steps - travel * steps_per_mm(slider.scale));
@@ -293,11 +296,11 @@ fn the_smallest_margin_agrees_with_kinematics() {
                 continue;
             }
             safe_count += 1;
-            let chassis_angles = angles(robot.firmware(), &pose);
+            let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
             let truth = ExactConditions::of(robot, chassis_angles).expect("a safe pose");
             let smallest_margin = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
             let error =
-                sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest_margin;
+                to_sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest_margin;
             let largest_band = truth.bands[..10].iter().copied().fold(0.0, f64::max);
             assert!(
                 error.abs() <= largest_band,

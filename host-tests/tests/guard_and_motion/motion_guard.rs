@@ -9,7 +9,7 @@ use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
 use crate::frames::{CheckedRobot, gait_command, settling_frames};
-use crate::truth::{Verdict, angles, is_safe, random_pose_within};
+use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
 /// Number of random pairs of poses tried for each robot. Some robots have no unsafe path between safe poses.
 const TRY_COUNT: usize = 6000;
@@ -41,7 +41,7 @@ fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
             let pose = Pose(std::array::from_fn(|n| {
                 Sweep((from_sweeps[n] + share * (to_sweeps[n] - from_sweeps[n])) as i16)
             }));
-            Verdict::of(robot, angles(robot.firmware(), &pose)) == Verdict::Unsafe
+            Verdict::of(robot, chassis_angles_deg(robot.firmware(), &pose)) == Verdict::Unsafe
         };
         if (1..50).step_by(4).any(is_unsafe_at) {
             pairs.push([from, to]);

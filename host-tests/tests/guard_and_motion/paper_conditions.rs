@@ -9,7 +9,7 @@ use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Sweep};
 use lizard_host_tests::paper_robot;
 
-use crate::truth::{angles, is_safe};
+use crate::truth::{chassis_angles_deg, is_safe};
 
 /// The head's crank angles at which the two crank tips coincide, deg. This is the real singularity: the couplers lie on
 /// each other, and the head can swing freely.
@@ -29,7 +29,7 @@ impl PrintedConditions {
     fn of(pose: &Pose) -> Self {
         let solution = paper_robot()
             .lizard()
-            .solve(&angles(paper_robot().firmware(), pose).into())
+            .solve(&chassis_angles_deg(paper_robot().firmware(), pose).into())
             .expect("the loops close");
         let abs_sine = |degrees: f64| degrees.to_radians().sin().abs();
         Self {

@@ -14,7 +14,7 @@ use lizard_kinematics::{Check, Infeasible, Limits, Part};
 use lizard_proof::STEPS_BAND;
 use lizard_robot::{CoreRobot, Robot};
 
-/// Maximum error of a margin, a sine, due to the guard's arithmetic. The rounding of lengths adds to this error.
+/// The maximum error of a margin due to the guard's arithmetic, as a sine. The rounding of lengths adds to this error.
 pub const MARGIN_BAND: f64 = 0.002;
 /// The smallest type-2 limit that robot.toml may set. Below it, the guard only has to detect that a margin is small.
 pub const MIN_TYPE2_LIMIT: f64 = 0.1;
@@ -37,12 +37,12 @@ pub const MARGINS: [Margin; 10] = [
 pub const FIVE_BAR_OF_MARGIN: [usize; 6] = [0, 1, 0, 0, 1, 1];
 
 /// Converts an angle of the core to degrees, 0..360.
-pub fn degrees(angle: Angle) -> f64 {
+pub fn to_degrees(angle: Angle) -> f64 {
     f64::from(angle.0) * 360.0 / 65536.0
 }
 
 /// Converts a margin of the core to a sine.
-pub fn sine(margin: Sine) -> f64 {
+pub fn to_sine(margin: Sine) -> f64 {
     f64::from(margin.0) / 32768.0
 }
 
@@ -51,9 +51,9 @@ pub fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// Returns the exact chassis angles of the core's pose, deg.
-pub fn angles(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
-    pose.angles(&firmware.neutral_angles()).map(degrees)
+/// Returns the exact chassis angles of the core's pose.
+pub fn chassis_angles_deg(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
+    pose.angles(&firmware.neutral_angles()).map(to_degrees)
 }
 
 /// The values of every safety condition at a pose, computed in floating point.
@@ -62,16 +62,16 @@ pub struct ExactConditions {
     /// Sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2, which is negative for crossed crank
     /// tips.
     pub margins: [f64; 10],
-    /// Slider travel from nominal, mm.
-    pub travels: [f64; 2],
-    /// K2 of head and tail, mm.
-    pub k2: [f64; 2],
+    /// Slider travel from nominal.
+    pub travels_mm: [f64; 2],
+    /// K2 of head and tail.
+    pub k2_mm: [f64; 2],
     /// True for each condition that is broken according to lizard-kinematics. Crossed crank tips count as a broken
     /// type-2 margin.
     pub broken: [bool; 12],
     limits: Limits,
-    /// The band of each condition, which is the maximum error that the guard may have: ten margins, then in mm the left
-    /// stroke, the right stroke, and K2 of head and tail.
+    /// The band of each condition, which is the maximum error that the guard may have: first those of the ten margins,
+    /// then, in mm, those of the left stroke, the right stroke, K2 of the head and K2 of the tail.
     pub bands: [f64; 14],
 }
 
@@ -104,34 +104,36 @@ impl ExactConditions {
         let firmware = robot.firmware();
         let side_band = |side| STEPS_BAND / steps_per_mm(firmware.slider(side).scale);
         let end_band = |end| STEPS_BAND / steps_per_mm(firmware.five_bar(end).bars().scale());
-        let [head, tail] =
-            [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(end, five_bar)| {
-                five_bar_bands(
-                    robot,
-                    end,
-                    five_bar.gap.length(),
-                    five_bar.type2.abs(),
-                    end_band(end),
-                )
-            });
+        let [
+            [head_type2, a1_type1, a2_type1],
+            [tail_type2, a4_type1, a3_type1],
+        ] = [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(end, five_bar)| {
+            five_bar_bands(
+                robot,
+                end,
+                five_bar.gap.length(),
+                five_bar.type2.abs(),
+                end_band(end),
+            )
+        });
         let leg_band = MARGIN_BAND;
         let mut broken = [false; 12];
         for violation in robot.limits().violations(&solution) {
-            broken[index_of(violation.check)] = true;
+            broken[condition_index(violation.check)] = true;
         }
         Ok(Self {
             broken,
             margins,
-            travels: [solution.left.s, solution.right.s],
-            k2: k2_values,
+            travels_mm: [solution.left.s, solution.right.s],
+            k2_mm: k2_values,
             limits: *robot.limits(),
             bands: [
-                head[0],
-                tail[0],
-                head[1],
-                head[2],
-                tail[2],
-                tail[1],
+                head_type2,
+                tail_type2,
+                a1_type1,
+                a2_type1,
+                a3_type1,
+                a4_type1,
                 leg_band,
                 leg_band,
                 leg_band,
@@ -157,25 +159,26 @@ impl ExactConditions {
         std::array::from_fn(|index| match index {
             0..2 => {
                 let margin = (self.margins[index].abs() - type2) / self.bands[index];
-                margin.min(self.k2[index] / self.bands[12 + index])
+                margin.min(self.k2_mm[index] / self.bands[12 + index])
             }
             2..6 => (self.margins[index] - type1) / self.bands[index],
             6..10 => (self.margins[index] - leg) / self.bands[index],
             _ => {
-                let travel = self.travels[index - 10];
+                let travel = self.travels_mm[index - 10];
                 (travel - stroke_min).min(stroke_max - travel) / self.bands[index]
             }
         })
     }
 
-    /// True if K2 of the five-bar with this index is so near to 0 that rounding may change its sign in the guard.
+    /// True if K2 of a five-bar is so near to 0 that rounding may change its sign in the guard. The index is 0 for the
+    /// head and 1 for the tail.
     pub fn is_at_crossing(&self, index: usize) -> bool {
-        self.k2[index].abs() <= self.bands[12 + index]
+        self.k2_mm[index].abs() <= self.bands[12 + index]
     }
 }
 
 /// Returns the index of a condition among the twelve: ten margins, two strokes.
-fn index_of(check: Check) -> usize {
+fn condition_index(check: Check) -> usize {
     let index_among = |checks: &[Check]| checks.iter().position(|known| *known == check);
     let kinds: [(usize, &[Check]); 5] = [
         (0, &Check::TYPE2),
@@ -190,9 +193,10 @@ fn index_of(check: Check) -> usize {
     indices.next().expect("every condition is of a known kind")
 }
 
-/// Returns the bands of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum of two errors: that
-/// of the guard's arithmetic, and that of rounding the distance `tip_distance_mm` between the crank tips by `step_mm`.
-/// Near a singularity, where `type2` is small, a step of this distance turns the couplers by a large angle.
+/// Returns the bands of a five-bar's margins: type-2, left type-1 and right type-1. Each band is the sum of two errors.
+/// The first is the error of the guard's arithmetic. The second is the effect of an error of `step_mm` in the distance
+/// `tip_distance_mm` between the crank tips. Near a singularity, where `type2` is small, this error turns the couplers
+/// by a large angle.
 fn five_bar_bands(
     robot: &Robot,
     end: End,
@@ -204,19 +208,23 @@ fn five_bar_bands(
         End::Head => lizard_kinematics::End::Head,
         End::Tail => lizard_kinematics::End::Tail,
     });
-    let (a, b) = (bars.left_coupler_length, bars.right_coupler_length);
+    let (left_coupler, right_coupler) = (bars.left_coupler_length, bars.right_coupler_length);
     let cosine = (1.0 - type2 * type2).max(0.0).sqrt();
-    [cosine * tip_distance_mm / (a * b), 1.0 / a, 1.0 / b]
-        .map(|turn_per_mm| MARGIN_BAND + step_mm * turn_per_mm / type2)
+    [
+        cosine * tip_distance_mm / (left_coupler * right_coupler),
+        1.0 / left_coupler,
+        1.0 / right_coupler,
+    ]
+    .map(|turn_per_mm| MARGIN_BAND + step_mm * turn_per_mm / type2)
 }
 
 impl Verdict {
     /// Judges the pose at chassis angles in degrees.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Self {
-        let Ok(truth) = ExactConditions::of(robot, angles) else {
+        let Ok(conditions) = ExactConditions::of(robot, angles) else {
             return Self::Unsafe;
         };
-        let smallest_distance = truth
+        let smallest_distance = conditions
             .distances_from_limits()
             .into_iter()
             .fold(f64::INFINITY, f64::min);
@@ -267,7 +275,7 @@ pub fn random_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
     Pose(calibration.map(|servo| Sweep(rng.i16(servo.travel_min.0..=servo.travel_max.0))))
 }
 
-/// Returns a random pose within a share of every servo's travel from neutral.
+/// Returns a random pose in which every servo turns from neutral by at most this share of its travel.
 pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
     let pose = random_pose(rng, calibration);
     Pose(
@@ -280,7 +288,9 @@ pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: 
 pub fn random_safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
     let calibration = firmware.calibration();
     (0..1_000_000)
-        .map(|n| random_pose_within(rng, &calibration, if n % 2 == 0 { 1.0 } else { 0.4 }))
+        .map(|attempt| {
+            random_pose_within(rng, &calibration, if attempt % 2 == 0 { 1.0 } else { 0.4 })
+        })
         .find(|pose| is_safe(firmware, pose))
         .expect("poses near neutral are safe")
 }

@@ -14,15 +14,11 @@ fn a_hundred_cycles_take_a_hundred_periods() {
         let frame_count = (5000.0 * float_gait.period()).round();
         let phase = (0..frame_count as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
         // The advance of a frame is rounded to 1/2^24 cycle, so each frame adds an error of up to half of this.
-        let expected = (frame_count / 50.0 / float_gait.period()).fract();
-        let error = (f64::from(phase) / f64::from(CYCLE)
-            - if float_gait.is_reversed() {
-                -expected
-            } else {
-                expected
-            })
-        .rem_euclid(1.0);
-        let error = error.min(1.0 - error) * f64::from(CYCLE);
+        let expected_phase = (frame_count / 50.0 / float_gait.period()).fract();
+        let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };
+        let difference =
+            (f64::from(phase) / f64::from(CYCLE) - sign * expected_phase).rem_euclid(1.0);
+        let error = difference.min(1.0 - difference) * f64::from(CYCLE);
         assert!(
             error <= 0.5 * frame_count + 1.0,
             "{name}: {} is {error} of 2^24 off",
@@ -55,8 +51,8 @@ fn every_speed_in_percent_gives_this_share_of_a_gaits_pace() {
                     let previous_phase = walker.motion().phase();
                     walker.run_frames(1);
                     // A frame advances by less than half a cycle, so the wrapped difference has the right sign.
-                    let step = walker.motion().phase().wrapping_sub(previous_phase) << 8;
-                    advance += i64::from(step as i32 >> 8);
+                    let phase_step = walker.motion().phase().wrapping_sub(previous_phase) << 8;
+                    advance += i64::from(phase_step as i32 >> 8);
                 }
                 let cycles = advance as f64 / f64::from(CYCLE);
                 let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };

@@ -24,8 +24,8 @@ use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Image, Port, Uno};
 
-/// A program that is not the firmware. It sends bytes forever at the boot loader's baud rate.
-static SENDER: LazyLock<Image> = LazyLock::new(|| {
+/// The image of a program that is not the firmware. It sends bytes forever at the boot loader's baud rate.
+static SENDER_IMAGE: LazyLock<Image> = LazyLock::new(|| {
     avr_gcc::compile_c(
         r#"
         #include <avr/io.h>
@@ -55,7 +55,7 @@ fn firmware() -> Vec<u8> {
     firmware_of(robot())
 }
 
-/// Returns a robot other than the robot under test, and the name by which `lizard` knows it.
+/// Returns a robot other than the robot under test, and its name for the option `--robot`.
 fn another_robot() -> (&'static str, Robot) {
     let name = match robot().name() {
         "large" => "unequal",
@@ -89,7 +89,7 @@ fn assert_eeprom_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
     );
 }
 
-/// Unplugs the board. It gets another port, to which the next program connects.
+/// Unplugs the board. The next program connects to a new port.
 fn unplug(desk: &mut Desk) {
     desk.port = Port::new().expect("a pseudo terminal");
 }
@@ -111,9 +111,9 @@ fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
 /// Begins an upload to a board, and waits until some pages of the new code are written.
 fn begin_upload(desk: &mut Desk) -> Shell {
     let shell = start_lizard_flash(desk, &[]);
-    let is_half_written = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+    let is_in_time = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
-    let has_begun = is_half_written && !shell.has_ended();
+    let has_begun = is_in_time && !shell.has_ended();
     assert!(has_begun, "the upload has begun:\n{screen}");
     shell
 }
@@ -138,7 +138,7 @@ fn a_blank_board_is_written_and_its_robot_reports_its_firmware() {
 #[test]
 fn a_board_whose_program_sends_bytes_forever_is_written_and_keeps_its_eeprom() {
     let mut desk = Desk::with_new_uno();
-    let program = SENDER.flash();
+    let program = SENDER_IMAGE.flash();
     desk.uno.set_flash(0, &program);
     let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
     desk.uno.set_eeprom(&eeprom);
@@ -178,9 +178,9 @@ fn one_page_that_differs_is_written_alone() {
 }
 
 #[test]
-fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
+fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_written_again() {
     let mut desk = Desk::with_new_uno();
-    desk.uno.set_flash(0, &SENDER.flash());
+    desk.uno.set_flash(0, &SENDER_IMAGE.flash());
     let shell = begin_upload(&mut desk);
     unplug(&mut desk);
     let screen = run_to_exit(&mut desk, &shell);
@@ -199,7 +199,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
     assert!(desk.uno.transmitted().is_empty(), "the board sends nothing");
     let edges = desk.uno.take_edges();
     assert!(edges.is_empty(), "no pin moves: {edges:?}");
-    // These seconds were simulated faster than real time, which a port does not allow, so the board gets a new port.
+    // These seconds were simulated faster than real time. A port needs real time, so the board gets a new port.
     unplug(&mut desk);
 
     let shell = start_lizard_flash(&desk, &[]);
@@ -207,7 +207,7 @@ fn a_board_unplugged_in_the_middle_does_nothing_until_it_is_written_again() {
 }
 
 #[test]
-fn a_board_whose_button_is_pressed_in_the_middle_is_called_again_and_written() {
+fn a_board_whose_reset_button_is_pressed_during_an_upload_is_called_again_and_written() {
     let mut desk = Desk::with_new_uno();
     let shell = begin_upload(&mut desk);
     desk.uno.reset();

@@ -1,8 +1,8 @@
-//! Tests with an old Nano, whose boot loader is slower and larger, and leaves the watchdog on.
+//! Tests with an old Nano. Its boot loader is slower and larger than that of a UNO, and leaves the watchdog on.
 
 use super::*;
 
-/// Address of the first byte of an old Nano's boot loader.
+/// The address of the first byte of an old Nano's boot loader.
 const NANO_BOOT_LOADER_START: usize = 0x7800;
 
 /// Returns a Nano as it was sold until 2018, with a boot loader at 57 600 baud.
@@ -29,7 +29,7 @@ fn an_old_nano_is_found_at_its_own_baud_rate_written_and_started() {
     );
     assert!(desk.uno.flash()[NANO_BOOT_LOADER_START..] == flash_before[NANO_BOOT_LOADER_START..]);
 
-    // Then only the robot is replaced. This boot loader never resets the chip.
+    // The next upload replaces only the robot. This boot loader never resets the chip.
     let shell = start_lizard_flash(&desk, &["--only-robot", "--robot", "paper"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("robot large "), "{screen}");

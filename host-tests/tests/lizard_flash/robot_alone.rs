@@ -14,7 +14,7 @@ fn send_line(desk: &mut Desk, line: &str, ms: u64) -> String {
 }
 
 #[test]
-fn only_the_robot_is_written_behind_the_firmware_and_the_trims_are_kept() {
+fn only_the_robot_is_written_after_the_firmware_and_the_trims_are_kept() {
     let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
     desk.uno.power_cycle();
@@ -45,14 +45,15 @@ fn only_the_robot_is_written_behind_the_firmware_and_the_trims_are_kept() {
     // Then the first robot is written again, with `--json`. Its trims are unchanged.
     let shell = start_lizard_flash(&desk, &["--only-robot", "--json"]);
     let screen = run_to_exit(&mut desk, &shell);
-    let (name, hash) = first_label.split_once(' ').expect("name and hash");
+    let (first_name, first_hash) = first_label.split_once(' ').expect("name and hash");
     let version = env!("CARGO_PKG_VERSION");
-    let expected_end =
-        format!(r#","firmware":"{version}","robot":{{"name":"{name}","hash":"{hash}"}}}}"#);
-    let line = screen.lines().find(|line| line.starts_with(r#"{"port":""#));
+    let expected_end = format!(
+        r#","firmware":"{version}","robot":{{"name":"{first_name}","hash":"{first_hash}"}}}}"#
+    );
+    let json_line = screen.lines().find(|line| line.starts_with(r#"{"port":""#));
     let is_expected =
         |line: &str| line.contains(r#""bytes_written":"#) && line.ends_with(&expected_end);
-    assert!(line.is_some_and(is_expected), "{screen}");
+    assert!(json_line.is_some_and(is_expected), "{screen}");
     assert!(!screen.contains("\n# lizard"), "{screen}");
     assert_eeprom_kept(&desk, &eeprom_before);
     let answer = send_line(&mut desk, "cal\n", 500);
@@ -68,11 +69,11 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let section = other_robot.section();
     // Waits until the third page of the robot is written.
     let third_page = usize::from(START_ADDRESS) + 0x100;
-    let is_half_written = desk.run_until(|uno| {
+    let is_in_time = desk.run_until(|uno| {
         let is_written = uno.flash()[third_page..third_page + 0x80] == section[0x100..0x180];
         is_written || shell.has_ended()
     });
-    assert!(is_half_written && !shell.has_ended(), "{}", shell.screen());
+    assert!(is_in_time && !shell.has_ended(), "{}", shell.screen());
     unplug(&mut desk);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
@@ -109,10 +110,10 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
 }
 
 #[test]
-fn no_robot_is_written_behind_another_program() {
+fn no_robot_is_written_after_another_program() {
     let mut desk = board_with_firmware();
-    // The flash is as after avrdude has written a sketch: only the sketch's pages differ.
-    desk.uno.set_flash(0, &SENDER.flash());
+    // A sketch replaces the firmware. avrdude writes only the sketch's pages, so the robot's section stays in flash.
+    desk.uno.set_flash(0, &SENDER_IMAGE.flash());
     let flash_before = desk.uno.flash().to_vec();
     let shell = start_lizard_flash(&desk, &["--only-robot"]);
     let screen = run_to_exit(&mut desk, &shell);
@@ -126,7 +127,7 @@ fn avrdude_writes_the_robot_that_lizard_image_has_made() {
     let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
     let folder = tempfile::tempdir().expect("a folder");
-    let hex = folder.path().join("robot.hex").display().to_string();
+    let hex_path = folder.path().join("robot.hex").display().to_string();
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
     let arguments = [
         "flash",
@@ -135,11 +136,11 @@ fn avrdude_writes_the_robot_that_lizard_image_has_made() {
         "--robot",
         name,
         "--output",
-        &hex,
+        &hex_path,
     ];
     let shell = Shell::start(&lizard, &arguments, &[]);
     run_to_exit(&mut desk, &shell);
-    let write_option = format!("flash:w:{hex}:i");
+    let write_option = format!("flash:w:{hex_path}:i");
     let port = desk.port_path();
     let options = ["-D", "-c", "arduino", "-p", "atmega328p", "-b", "115200"];
     let arguments = [&options[..], &["-P", &port, "-U", &write_option]].concat();

@@ -39,7 +39,7 @@ fn partly_written_flash(section: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn every_robot_is_read_with_any_bytes_behind_its_section() {
+fn every_robot_is_read_with_any_bytes_after_its_section() {
     for (named, section) in sections() {
         assert_eq!(find_damage(section), None, "{}", named.name);
         for filler in [0, 0x55, 0xff] {
@@ -131,26 +131,26 @@ fn erased_flash_and_flash_filled_with_any_one_byte_are_refused() {
 #[test]
 fn a_hundred_thousand_random_sections_are_refused() {
     let rng = &mut rng(150);
-    for n in 0..100_000 {
+    for index in 0..100_000 {
         let mut section = vec![0; rng.usize(..=usize::from(SPACE_BYTES))];
         rng.fill(&mut section);
         // The core checks the next field of the header only if the previous field is valid.
-        if n % 4 > 0 {
+        if index % 4 > 0 {
             put_bytes(&mut section, 0, &MAGIC.to_le_bytes());
         }
-        if n % 4 > 1 {
+        if index % 4 > 1 {
             put_bytes(
                 &mut section,
                 FORMAT_BYTES.start,
                 &lizard_core::numbers::section::FORMAT.to_le_bytes(),
             );
         }
-        if n % 4 > 2 {
+        if index % 4 > 2 {
             let length = section.len() as u16;
             put_bytes(&mut section, LENGTH_BYTES.start, &length.to_le_bytes());
         }
         // One section in 65 536 has a valid checksum, but its numbers are refused.
-        assert!(find_damage(&section).is_some(), "section {n}");
+        assert!(find_damage(&section).is_some(), "section {index}");
     }
 }
 
@@ -164,8 +164,8 @@ fn put_bytes(section: &mut [u8], offset: usize, bytes: &[u8]) {
 fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
     let rng = &mut rng(151);
     for _ in 0..20_000 {
-        let min = size_of::<Header>() + size_of::<Numbers>();
-        let mut section = vec![0; rng.usize(min..=usize::from(SPACE_BYTES))];
+        let min_length = size_of::<Header>() + size_of::<Numbers>();
+        let mut section = vec![0; rng.usize(min_length..=usize::from(SPACE_BYTES))];
         rng.fill(&mut section);
         let (_, valid_section) = rng.choice(sections()).expect("sections");
         put_bytes(&mut section, 0, &valid_section[..LENGTH_BYTES.start]);
@@ -182,7 +182,7 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
 fn robots_with_changed_numbers_are_refused_or_harmless() {
     let rng = &mut rng(152);
     let (mut refused_count, mut accepted_count) = (0, 0);
-    for n in 0..100_000 {
+    for index in 0..100_000 {
         let (_, section) = rng.choice(sections()).expect("sections");
         let mut section = section.clone();
         for _ in 0..=rng.usize(..4) {
@@ -191,7 +191,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
         write_checksum(&mut section);
         match find_damage(&section) {
             Some(SectionError::Impossible) => refused_count += 1,
-            Some(other_damage) => panic!("section {n} is {other_damage:?}"),
+            Some(other_damage) => panic!("section {index} is {other_damage:?}"),
             None => {
                 accepted_count += 1;
                 if accepted_count % 20 == 0 {
@@ -207,7 +207,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     );
 }
 
-/// The gaits exceed the range that their section states for gaits, and the guard accepts any margin and stroke.
+/// The section's gaits exceed the travel that the section states for them. The guard accepts any margin and stroke.
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
@@ -233,15 +233,15 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
         }
         let robot = Robot::open(flash(&content.section_bytes())).expect("nothing is out of range");
         for id in GaitId::all(robot.gait_count()).skip(1) {
-            let mut running = RunningRobot::power_on(robot);
-            run_frames(&mut running, 30);
+            let mut running_robot = RunningRobot::power_on(robot);
+            run_frames(&mut running_robot, 30);
             let name: String = robot.gait_name(id).map(char::from).collect();
-            assert_eq!(running.send_line(&name), format!("ok {name}"));
-            run_frames(&mut running, 300);
-            if running.motion().activity() == Activity::Stop {
-                let hazard = running.motion().hazard();
+            assert_eq!(running_robot.send_line(&name), format!("ok {name}"));
+            run_frames(&mut running_robot, 300);
+            if running_robot.motion().activity() == Activity::Stop {
+                let hazard = running_robot.motion().hazard();
                 assert!(matches!(hazard, Some(Hazard::Travel(_))), "{hazard:?}");
-                assert_eq!(running.status_value("guard"), "held");
+                assert_eq!(running_robot.status_value("guard"), "held");
                 held_count += 1;
             }
         }
@@ -249,7 +249,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     assert!(held_count > 50, "{held_count} gaits were held");
 }
 
-/// The neutral angles lie outside the travel, so the robot could not stand.
+/// A neutral angle lies outside the servo's travel, so the robot could not stand.
 #[test]
 fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     for (named, _) in sections() {
@@ -258,8 +258,8 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
                 let mut content = named.robot.content().clone();
                 let calibration = &mut content.calibration[servo];
                 (calibration.travel_min, calibration.travel_max) = (Sweep(min), Sweep(max));
-                let reach = &mut content.needed_travel[servo];
-                (reach.min, reach.max) = (Sweep(min), Sweep(max));
+                let needed_travel = &mut content.needed_travel[servo];
+                (needed_travel.min, needed_travel.max) = (Sweep(min), Sweep(max));
                 let damage = find_damage(&content.section_bytes());
                 let name = &named.name;
                 assert_eq!(
@@ -272,7 +272,7 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     }
 }
 
-/// Changes a random number of a section: a number of the servos, pins or limits, or of the parts behind `Numbers`
+/// Changes a random number of a section: a number of the servos, pins or limits, or of the parts after `Numbers`
 /// (curves, gaits, waveforms, maps). Leaves the bars and the offsets of the parts unchanged: the device trusts them,
 /// because the host has checked them.
 fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
@@ -300,12 +300,12 @@ fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
     section[offset..offset + 2].copy_from_slice(&new_word.to_le_bytes());
 }
 
-/// Runs a robot with an accepted section and random commands. Checks that every frame completes and no servo turns
+/// Runs a robot with an accepted section and random commands. Checks that every frame ends and that no servo turns
 /// beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
     let robot = Robot::open(flash(section)).expect("an accepted section");
-    let mut running = RunningRobot::power_on(robot);
-    run_frames(&mut running, 30);
+    let mut running_robot = RunningRobot::power_on(robot);
+    run_frames(&mut running_robot, 30);
     let gaits: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
     for _ in 0..8 {
         let line = match rng.u8(..8) {
@@ -327,33 +327,37 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
                 .expect("a command"))
             .to_string(),
         };
-        running.board.send(line.as_bytes());
-        running.board.send(b"\r");
-        run_frames(&mut running, 40);
+        running_robot.board.send(line.as_bytes());
+        running_robot.board.send(b"\r");
+        run_frames(&mut running_robot, 40);
     }
 }
 
 /// Runs frames and checks that no servo turns beyond its travel.
-fn run_frames(running: &mut RunningRobot, count: u32) {
+fn run_frames(running_robot: &mut RunningRobot, count: u32) {
     for _ in 0..count {
-        let pulses = running.run_frame();
-        running.board.transmitter.text.clear();
-        for (pulse, servo) in pulses.0.into_iter().zip(running.motion().calibration()) {
+        let pulses = running_robot.run_frame();
+        running_robot.board.transmitter.text.clear();
+        for (pulse, servo) in pulses
+            .0
+            .into_iter()
+            .zip(running_robot.motion().calibration())
+        {
             check_pulse(pulse, servo);
         }
     }
 }
 
-/// Checks that a pulse is within the travel and within the range of a hobby servo. A width of 0 means no pulse.
+/// Checks that a pulse is within the servo's travel and within 500..2500 us. A width of 0 means no pulse.
 fn check_pulse(pulse: PulseWidth, servo: &Calibration) {
     let end_pulses = [
         servo.clamped_width(servo.travel_min),
         servo.clamped_width(servo.travel_max),
     ];
-    let travel = end_pulses[0].min(end_pulses[1])..=end_pulses[0].max(end_pulses[1]);
+    let travel_range = end_pulses[0].min(end_pulses[1])..=end_pulses[0].max(end_pulses[1]);
     let allowed_range = 500 * 16 - 1..=2500 * 16 + 1;
     assert!(
-        pulse.0 == 0 || travel.contains(&pulse.0) && allowed_range.contains(&pulse.0),
+        pulse.0 == 0 || travel_range.contains(&pulse.0) && allowed_range.contains(&pulse.0),
         "{pulse:?} of {servo:?}"
     );
 }

@@ -8,7 +8,7 @@ use lizard_host_tests::{NamedRobot, robots};
 mod damaged;
 mod read_back;
 
-/// All robots with their sections. The robots from files come first.
+/// Returns all robots with their sections, the robots from files first.
 fn sections() -> &'static [(&'static NamedRobot, Vec<u8>)] {
     static SECTIONS: LazyLock<Vec<(&'static NamedRobot, Vec<u8>)>> = LazyLock::new(|| {
         let sections = robots().iter().map(|named| (named, named.robot.section()));

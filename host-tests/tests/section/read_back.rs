@@ -1,5 +1,5 @@
-//! Tests that read sections back with the firmware's reader: each field must match robot.toml. The expected values come
-//! from the robot in floating point, not from the numbers of which the section was made.
+//! Tests that read sections back with the firmware's reader: each field must match the robot's file. The expected
+//! values come from the robot in floating point, not from the numbers of which the section was made.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::bars::Bars;
@@ -16,7 +16,7 @@ use lizard_robot::{Robot as FileRobot, STEPS_PER_DEGREE};
 use crate::sections;
 
 /// Runs a test for every robot. The test gets the robot's name, the robot that the core reads, the robot from
-/// robot.toml, and the flash.
+/// its file, and the flash.
 fn for_each_robot(test: impl Fn(&str, &Robot, &FileRobot, Region<'_>)) {
     for (named, section) in sections() {
         let flash = Region::new(section);
@@ -72,9 +72,9 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
         assert!(are_close(stored.board, supplies.board), "{name} {stored:?}");
         match supplies.rail {
             Some(rail) => {
-                let divided = supplies.reference * rail.ratio;
+                let rail_reference = supplies.reference * rail.ratio;
                 assert!(
-                    is_close(stored.rail_reference_mv, divided),
+                    is_close(stored.rail_reference_mv, rail_reference),
                     "{name} {stored:?}"
                 );
                 assert!(are_close(stored.rail, rail.thresholds), "{name} {stored:?}");
@@ -89,9 +89,9 @@ fn the_servos_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         for (index, servo) in file_robot.servos().iter().enumerate() {
             let servo_id = Servo::ALL[index];
-            let neutral = f64::from(robot.neutral_angle_of(servo_id).0) / STEPS_PER_DEGREE;
+            let neutral_deg = f64::from(robot.neutral_angle_of(servo_id).0) / STEPS_PER_DEGREE;
             assert!(
-                (neutral - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
+                (neutral_deg - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
                 "{name}"
             );
             assert_eq!(
@@ -104,8 +104,8 @@ fn the_servos_are_read_back() {
             for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
                 let error =
                     f64::from(calibration.width(Sweep(sweep)).0) - 16.0 * pulse_us(sweep.into());
-                // The rounding errors are half a cycle for the neutral pulse, half a cycle for the product, and that
-                // of the gain over the travel.
+                // The error is half a cycle for the neutral pulse, half a cycle for the product, and the rounding of
+                // the gain over the travel.
                 assert!(
                     error.abs() <= 1.5,
                     "{name} {servo_id:?}: {error} cycles at {sweep}"
@@ -131,11 +131,11 @@ fn the_servos_are_read_back() {
 #[test]
 fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
-        let (stored, limits) = (robot.limits(), file_robot.limits());
+        let (stored_limits, limits) = (robot.limits(), file_robot.limits());
         for (stored, exact) in [
-            (stored.type2, limits.type2),
-            (stored.type1, limits.type1),
-            (stored.leg, limits.leg),
+            (stored_limits.type2, limits.type2),
+            (stored_limits.type1, limits.type1),
+            (stored_limits.leg, limits.leg),
         ] {
             let rounding_up = f64::from(stored.0) - 32768.0 * exact;
             assert!(
@@ -143,8 +143,8 @@ fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
                 "{name}: {stored:?} for {exact}"
             );
         }
-        let per_frame = file_robot.speed_limits().slew * STEPS_PER_DEGREE / 50.0;
-        let rounding_down = per_frame - f64::from(robot.slew().per_frame);
+        let steps_per_frame = file_robot.speed_limits().slew * STEPS_PER_DEGREE / 50.0;
+        let rounding_down = steps_per_frame - f64::from(robot.slew().per_frame);
         assert!(
             (-1e-5..1.0).contains(&rounding_down),
             "{name}: {rounding_down}"
@@ -168,7 +168,7 @@ fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
                 degrees(stored.min.0.into()) - min,
                 degrees(stored.max.0.into()) - max,
             ];
-            // The error of the tables is up to a tenth of a degree, and that of rounding a step.
+            // The tables have an error of up to a tenth of a degree, and rounding adds up to a step.
             assert!(
                 errors.iter().all(|error| error.abs() < 0.11),
                 "{name} {servo:?}: {errors:?}"
@@ -180,10 +180,16 @@ fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
 #[test]
 fn the_bars_and_the_sliders_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
-        let l = file_robot.lizard().links;
+        let links = file_robot.lizard().links;
         for (end, [base, left, right, a, b]) in [
-            (End::Head, [l.l0, l.l1, l.l4, l.l2, l.l3]),
-            (End::Tail, [l.l5, l.l6, l.l9, l.l7, l.l8]),
+            (
+                End::Head,
+                [links.l0, links.l1, links.l4, links.l2, links.l3],
+            ),
+            (
+                End::Tail,
+                [links.l5, links.l6, links.l9, links.l7, links.l8],
+            ),
         ] {
             let five_bar = robot.five_bar(end);
             let scale = five_bar.bars().scale();
@@ -197,16 +203,28 @@ fn the_bars_and_the_sliders_are_read_back() {
             let bits = u32::from(scale.bits);
             assert!(fits(bits), "{name} {end:?}: {bits}");
         }
-        let side_offset = (l.l5 - l.l0) / 2.0;
+        let side_offset = (links.l5 - links.l0) / 2.0;
         let limits = file_robot.limits();
         for (side, [offset, base, front, rear, nominal]) in [
             (
                 Side::Left,
-                [side_offset, l.l10, l.l14, l.l11, l.l12 + l.l13],
+                [
+                    side_offset,
+                    links.l10,
+                    links.l14,
+                    links.l11,
+                    links.l12 + links.l13,
+                ],
             ),
             (
                 Side::Right,
-                [-side_offset, l.l15, l.l19, l.l16, l.l17 + l.l18],
+                [
+                    -side_offset,
+                    links.l15,
+                    links.l19,
+                    links.l16,
+                    links.l17 + links.l18,
+                ],
             ),
         ] {
             let core_side = robot.slider(side);
@@ -220,10 +238,10 @@ fn the_bars_and_the_sliders_are_read_back() {
             ];
             let expected = [offset, base, front, rear, nominal].map(length);
             assert_eq!(lengths, expected, "{name} {side:?}");
-            let per_mm = f64::from(1u32 << core_side.scale.bits);
+            let steps_per_mm = f64::from(1u32 << core_side.scale.bits);
             let inward_rounding = [
-                f64::from(core_side.stroke_min) - (nominal + limits.stroke_min) * per_mm,
-                (nominal + limits.stroke_max) * per_mm - f64::from(core_side.stroke_max),
+                f64::from(core_side.stroke_min) - (nominal + limits.stroke_min) * steps_per_mm,
+                (nominal + limits.stroke_max) * steps_per_mm - f64::from(core_side.stroke_max),
             ];
             let is_rounded_inwards = inward_rounding
                 .iter()
@@ -245,16 +263,24 @@ enum CurveKind {
 #[test]
 fn the_curves_are_read_back_at_every_point_of_their_tables() {
     for_each_robot(|name, robot, file_robot, flash| {
-        let l = file_robot.lizard().links;
+        let links = file_robot.lizard().links;
         for (end, [a, b], curves) in [
-            (End::Head, [l.l2, l.l3], read_numbers(flash).curves[0]),
-            (End::Tail, [l.l7, l.l8], read_numbers(flash).curves[1]),
+            (
+                End::Head,
+                [links.l2, links.l3],
+                read_numbers(flash).curves[0],
+            ),
+            (
+                End::Tail,
+                [links.l7, links.l8],
+                read_numbers(flash).curves[1],
+            ),
         ] {
             let scale = robot.five_bar(end).bars().scale();
             let [a, b] = [a, b].map(|mm| steps_of_mm(mm, scale));
-            // Squared distances of the crank tips, in units of four squared steps: with stretched and with folded
-            // couplers.
-            let [reach_sq, folded_sq] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
+            // The squared distances between the crank tips with stretched and with folded couplers, in units of four
+            // squared steps.
+            let [stretched_sq, folded_sq] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
             let kinds = [
                 CurveKind::Rise,
                 CurveKind::Stretched,
@@ -277,35 +303,34 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                     .load();
                 for (index, entry) in table.into_iter().enumerate().take(ENTRY_COUNT) {
                     let max_argument = match kind {
-                        CurveKind::Rise | CurveKind::Skew => reach_sq,
+                        CurveKind::Rise | CurveKind::Skew => stretched_sq,
                         // Rounded down to integers, as in the core.
-                        CurveKind::Stretched => (reach_sq.floor() / 4.0).floor(),
+                        CurveKind::Stretched => (stretched_sq.floor() / 4.0).floor(),
                         CurveKind::Folded => folded_sq.floor(),
                     };
                     let argument = argument_at(max_argument as u32, index) as f64;
                     let distance_sq = match kind {
-                        CurveKind::Rise => {
-                            argument.max(2.0 * reach_sq * folded_sq / (reach_sq + folded_sq))
-                        }
+                        CurveKind::Rise => argument
+                            .max(2.0 * stretched_sq * folded_sq / (stretched_sq + folded_sq)),
                         CurveKind::Skew => argument,
-                        CurveKind::Stretched => reach_sq - argument,
+                        CurveKind::Stretched => stretched_sq - argument,
                         CurveKind::Folded => folded_sq + argument,
                     };
                     let exact = match kind {
                         CurveKind::Skew => (a * a - b * b).abs() / 4.0 / distance_sq,
-                        _ if distance_sq <= folded_sq || distance_sq >= reach_sq => 0.0,
+                        _ if distance_sq <= folded_sq || distance_sq >= stretched_sq => 0.0,
                         _ => {
-                            ((reach_sq - distance_sq) * (distance_sq - folded_sq)).sqrt()
+                            ((stretched_sq - distance_sq) * (distance_sq - folded_sq)).sqrt()
                                 / distance_sq
                         }
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
-                    // The entry is rounded by one unit. `distance_sq` is rounded, too, which matters where the curve is
-                    // steep.
+                    // The entry has a rounding error of one unit. The rounding error of `distance_sq` matters where the
+                    // curve is steep.
                     let tolerance = 1.01
                         + exact * 2.0
                             / (distance_sq - folded_sq)
-                                .min(reach_sq - distance_sq)
+                                .min(stretched_sq - distance_sq)
                                 .max(1.0);
                     let error = f64::from(entry) - exact;
                     assert!(
@@ -323,28 +348,28 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         assert_eq!(robot.gait_count(), file_robot.gaits().len(), "{name}");
         for (id, gait) in GaitId::all(robot.gait_count()).zip(file_robot.gaits()) {
-            let gait_name = format!("{name} {}", gait.name());
+            let gait_label = format!("{name} {}", gait.name());
             let read_name: String = robot.gait_name(id).map(char::from).collect();
             assert_eq!(read_name, gait.name().replace('-', " "), "{name}");
-            let numbers = robot.gait(id);
-            let mut increment = f64::from(1 << 24) / (gait.period() * 50.0);
+            let core_gait = robot.gait(id);
+            let mut expected_increment = f64::from(1 << 24) / (gait.period() * 50.0);
             if gait.is_reversed() {
-                increment = -increment;
+                expected_increment = -expected_increment;
             }
             assert!(
-                (f64::from(numbers.increment) - increment).abs() <= 0.51,
-                "{gait_name}"
+                (f64::from(core_gait.increment) - expected_increment).abs() <= 0.51,
+                "{gait_label}"
             );
             for step in 0..8192 {
-                let pose = numbers.pose(robot.waves(), step << 11);
+                let pose = core_gait.pose(robot.waves(), step << 11);
                 let exact = gait.angles(f64::from(step) / 8192.0);
                 for (index, angle) in pose.angles(&robot.neutral_angles()).into_iter().enumerate() {
                     let angle = f64::from(angle.0) / STEPS_PER_DEGREE;
                     let error = (angle - exact[index] + 180.0).rem_euclid(360.0) - 180.0;
-                    // The error of a table, and half a step of the neutral angle.
+                    // The tolerance is the error of a table plus half a step of the neutral angle.
                     assert!(
                         error.abs() <= 0.504,
-                        "{gait_name} A{} at {step}: {error}",
+                        "{gait_label} A{} at {step}: {error}",
                         index + 1
                     );
                 }
@@ -387,11 +412,12 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
 fn accepts_conditions_of_map(robot: &Robot, map_index: usize, pose: &Pose) -> bool {
     let clearance = Clearance::of(robot, pose);
     let limits = robot.limits();
-    let accepts_margins = |type2: usize, first: usize| {
-        let is_kept = |index: usize, limit: Sine| clearance.margins[index] >= limit;
-        is_kept(type2, limits.type2)
-            && (first..first + 2)
-                .all(|index| is_kept(2 + index, limits.type1) && is_kept(6 + index, limits.leg))
+    let accepts_margins = |end_index: usize, first_servo: usize| {
+        let is_within_limit = |index: usize, limit: Sine| clearance.margins[index] >= limit;
+        is_within_limit(end_index, limits.type2)
+            && (first_servo..first_servo + 2).all(|index| {
+                is_within_limit(2 + index, limits.type1) && is_within_limit(6 + index, limits.leg)
+            })
     };
     match map_index {
         0 => accepts_margins(0, 0),
@@ -412,26 +438,26 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
     for (named, section) in sections() {
         let flash = Region::new(section);
         let robot = Robot::open(flash).expect("a robot");
-        let travel = robot.calibration();
+        let calibration = robot.calibration();
         robot_with_maps_count +=
             usize::from(read_numbers(flash).parts[Part::Rows as usize].count > 0);
         for (map_index, map) in read_maps(flash).into_iter().enumerate() {
             let servos = MAP_SERVOS[map_index];
             for [row, columns] in map {
-                let cells = (*columns.start()..*columns.end()).step_by(128);
-                for cell in cells {
+                let cell_starts = (*columns.start()..*columns.end()).step_by(128);
+                for cell_start in cell_starts {
                     for (row_offset, column_offset) in
                         [(0, 0), (255, 0), (0, 127), (255, 127), (128, 64)]
                     {
-                        let sweeps = [row.start() + row_offset, cell + column_offset];
+                        let sweeps = [row.start() + row_offset, cell_start + column_offset];
                         let mut pose = Pose::NEUTRAL;
-                        let mut is_inside = true;
+                        let mut is_within_travel = true;
                         for (servo, sweep) in servos.into_iter().zip(sweeps) {
                             let sweep = Sweep(sweep as i16);
-                            is_inside &= travel[servo].reaches(sweep);
+                            is_within_travel &= calibration[servo].reaches(sweep);
                             pose.0[servo] = sweep;
                         }
-                        if is_inside {
+                        if is_within_travel {
                             let name = &named.name;
                             assert!(
                                 accepts_conditions_of_map(&robot, map_index, &pose),
@@ -459,13 +485,13 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         let robot = Robot::open(flash).expect("a robot");
         let maps = read_maps(flash);
         let mut certified_count = 0;
-        for n in 0..20_000 {
+        for index in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
-            for (sweep, travel) in pose.0.iter_mut().zip(robot.calibration()) {
+            for (sweep, servo) in pose.0.iter_mut().zip(robot.calibration()) {
                 // Any sweep, a sweep within the travel, or a sweep near neutral.
-                *sweep = Sweep(match n % 3 {
+                *sweep = Sweep(match index % 3 {
                     0 => rng.i16(..),
-                    1 => rng.i16(travel.travel_min.0..=travel.travel_max.0),
+                    1 => rng.i16(servo.travel_min.0..=servo.travel_max.0),
                     _ => rng.i16(-3000..3000),
                 });
             }

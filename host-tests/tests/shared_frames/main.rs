@@ -1,4 +1,4 @@
-//! Tests that functions with shared prologues and epilogues compute the same results as with their own.
+//! Tests that functions compute the same results with shared prologues and epilogues as with their own.
 
 use std::fs;
 
@@ -16,16 +16,16 @@ const PROGRAM: &str = r#"
 #include <avr/io.h>
 #include <avr/interrupt.h>
 #include <stdint.h>
-#define OWN __attribute__((noinline))
+#define NOINLINE __attribute__((noinline))
 volatile uint32_t results[40];
 volatile uint8_t done;
 volatile uint16_t ticks;
 ISR(TIMER0_COMPA_vect) { ticks++; }
 
 static uint32_t state = 12345;
-OWN uint32_t next(void) { state ^= state << 13; state ^= state >> 17; state ^= state << 5; return state; }
+NOINLINE uint32_t next(void) { state ^= state << 13; state ^= state >> 17; state ^= state << 5; return state; }
 
-OWN uint32_t mix(uint32_t a, uint32_t b, uint32_t c, uint16_t d) {
+NOINLINE uint32_t mix(uint32_t a, uint32_t b, uint32_t c, uint16_t d) {
     uint32_t x = a + next(), y = b ^ next(), z = c - next();
     for (uint8_t i = 0; i < 5; i++) {
         x += y * d; y ^= z + next(); z = (z << 3) | (z >> 29); x -= next();
@@ -33,29 +33,29 @@ OWN uint32_t mix(uint32_t a, uint32_t b, uint32_t c, uint16_t d) {
     return x ^ y ^ z ^ a ^ b ^ c;
 }
 
-OWN uint16_t sorted(uint8_t n) {
-    uint16_t all[30], sum = 0;
-    for (uint8_t i = 0; i < n; i++) all[i] = next();
+NOINLINE uint16_t sort(uint8_t n) {
+    uint16_t values[30], sum = 0;
+    for (uint8_t i = 0; i < n; i++) values[i] = next();
     for (uint8_t i = 1; i < n; i++)
-        for (uint8_t k = i; k && all[k] < all[k - 1]; k--) {
-            uint16_t kept = all[k]; all[k] = all[k - 1]; all[k - 1] = kept;
+        for (uint8_t k = i; k && values[k] < values[k - 1]; k--) {
+            uint16_t smaller = values[k]; values[k] = values[k - 1]; values[k - 1] = smaller;
         }
-    for (uint8_t i = 0; i < n; i++) { if (all[i] == 7) return i; sum = sum * 31 + all[i] + i; }
+    for (uint8_t i = 0; i < n; i++) { if (values[i] == 7) return i; sum = sum * 31 + values[i] + i; }
     return sum;
 }
 
-OWN uint32_t deep(uint8_t n, uint32_t seed) {
-    volatile uint8_t room[20];
-    for (uint8_t i = 0; i < sizeof room; i++) room[i] = seed >> (i & 7);
-    uint32_t below = n ? deep(n - 1, seed * 3 + n) : 1;
-    for (uint8_t i = 0; i < sizeof room; i++) below = below * 5 + room[i];
-    if (below & 1) return below - seed;
-    return below / (seed | 1) + seed;
+NOINLINE uint32_t recurse(uint8_t n, uint32_t seed) {
+    volatile uint8_t buffer[20];
+    for (uint8_t i = 0; i < sizeof buffer; i++) buffer[i] = seed >> (i & 7);
+    uint32_t inner = n ? recurse(n - 1, seed * 3 + n) : 1;
+    for (uint8_t i = 0; i < sizeof buffer; i++) inner = inner * 5 + buffer[i];
+    if (inner & 1) return inner - seed;
+    return inner / (seed | 1) + seed;
 }
 
-OWN uint64_t wide(uint64_t a, uint64_t b) { uint64_t c = a * b + next(); return c / (a | 3) + mix(a, b, c, c); }
+NOINLINE uint64_t divide(uint64_t a, uint64_t b) { uint64_t c = a * b + next(); return c / (a | 3) + mix(a, b, c, c); }
 
-/* Branches over jumps: over one, over one that others lead to, over one that may be skipped. */
+/* Three branches over jumps. Another branch leads to the second jump. An instruction may skip the third branch. */
 asm(
     ".section .text.jumps, \"ax\", @progbits\n .global jumps\n .type jumps, @function\n jumps:\n"
     "cpi r24, 100\n brcs 1f\n rjmp 2f\n 1: subi r25, 40\n"
@@ -69,9 +69,9 @@ int main(void) {
     OCR0A = 130; TCCR0A = 2; TCCR0B = 1; TIMSK0 = 2; sei();
     for (uint8_t i = 0; i < 10; i++) {
         results[4 * i] = mix(next(), next(), next(), i);
-        results[4 * i + 1] = sorted(20 + i) + ((uint32_t)jumps(next()) << 16);
-        results[4 * i + 2] = deep(i, next());
-        results[4 * i + 3] = wide(next(), next());
+        results[4 * i + 1] = sort(20 + i) + ((uint32_t)jumps(next()) << 16);
+        results[4 * i + 2] = recurse(i, next());
+        results[4 * i + 3] = divide(next(), next());
     }
     cli();
     done = ticks > 500 ? 1 : 2;
@@ -80,13 +80,13 @@ int main(void) {
 "#;
 
 /// Returns the address of a variable in RAM.
-fn address_of(image: &Image, name: &str) -> u16 {
+fn ram_address(image: &Image, name: &str) -> u16 {
     (image.symbol(name).expect("the variable exists").address - 0x80_0000) as u16
 }
 
 /// Runs the program. Returns its results and the depth of its stack.
 fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
-    let [done_address, results_address] = ["done", "results"].map(|name| address_of(image, name));
+    let [done_address, results_address] = ["done", "results"].map(|name| ram_address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(200);
     assert_eq!(
@@ -95,7 +95,7 @@ fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
         "the program ends, and a timer has interrupted it often"
     );
     let bytes = (0..160)
-        .map(|byte| uno.peek(results_address + byte))
+        .map(|offset| uno.peek(results_address + offset))
         .collect();
     (bytes, uno.stack_used())
 }
@@ -107,7 +107,7 @@ fn a_program_computes_the_same_with_shared_prologues_and_epilogues() {
         .expect("the object is valid")
         .expect("the object is for an AVR");
     assert!(savings.frames > 100, "{savings:?}");
-    // In `jumps`, the linker shortens two of the three branches over jumps.
+    // In `jumps`, the linker replaces only the first branch over a jump, which saves 2 bytes.
     assert_eq!(savings.branches, 2, "{savings:?}");
     let plain_image = link("", &object).expect("the object links");
     let shrunk_image = link(ROUTINES, &shrunk).expect("the object links");
@@ -118,7 +118,7 @@ fn a_program_computes_the_same_with_shared_prologues_and_epilogues() {
     );
     assert_eq!(plain_results, shrunk_results);
     assert!(plain_results.iter().any(|byte| *byte != 0));
-    // Ten stack frames of `deep` exist at once, and each may save one more register.
+    // Ten stack frames of `recurse` exist at once, and each may save one more register.
     assert!(
         shrunk_depth.abs_diff(plain_depth) < 40,
         "{plain_depth} {shrunk_depth}"
@@ -132,16 +132,16 @@ const STACK_ARGUMENT: &str = r#"
 volatile uint8_t done, sum;
 volatile uint16_t result;
 uint8_t table[20];
-__attribute__((noinline, noclone)) uint16_t last(uint32_t a, uint32_t b, uint32_t c, uint32_t d,
+__attribute__((noinline, noclone)) uint16_t return_last(uint32_t a, uint32_t b, uint32_t c, uint32_t d,
     uint16_t e, uint16_t on_the_stack) {
-    uint8_t room[20], all = 0, *p = room, *q = table;
-    for (uint8_t i = 0; i < 20; i++) room[i] = table[i] + (uint8_t)a;
-    asm volatile("" :: "m"(room));
-    for (uint8_t i = 0; i < 20; i++) all ^= *p++ + *q++;
-    sum = all + (uint8_t)(b ^ c ^ d ^ e);
+    uint8_t buffer[20], mixed = 0, *p = buffer, *q = table;
+    for (uint8_t i = 0; i < 20; i++) buffer[i] = table[i] + (uint8_t)a;
+    asm volatile("" :: "m"(buffer));
+    for (uint8_t i = 0; i < 20; i++) mixed ^= *p++ + *q++;
+    sum = mixed + (uint8_t)(b ^ c ^ d ^ e);
     return on_the_stack;
 }
-int main(void) { result = last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
+int main(void) { result = return_last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;) {} }
 "#;
 
 #[test]
@@ -150,7 +150,7 @@ fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
     let shrunk = shrink(&object).expect("the object is valid");
     let image =
         link(ROUTINES, &shrunk.expect("the object is for an AVR").0).expect("the object links");
-    let [done_address, result_address] = ["done", "result"].map(|name| address_of(&image, name));
+    let [done_address, result_address] = ["done", "result"].map(|name| ram_address(&image, name));
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.run_ms(10);
     assert_eq!(uno.peek(done_address), 1);
@@ -174,8 +174,9 @@ const CALL_SAVED_REGISTERS: [u8; 18] = [
 ];
 
 /// Returns a program that calls a function forty times while a timer interrupts it every 61 cycles. The function saves
-/// the registers from `first_register` on, reserves `room_bytes` bytes, overwrites both, restores the registers and
-/// returns. At the end, the program stores the registers and the stack pointer in RAM.
+/// the registers from `first_register` on, makes room for `room_bytes` bytes of variables, overwrites registers and
+/// variables, restores the registers, and returns. At the end, the program stores the registers and the stack pointer
+/// in RAM.
 fn frame_program(first_register: u8, room_bytes: u8) -> String {
     let load = |registers: &[u8], increment: u8| -> String {
         registers

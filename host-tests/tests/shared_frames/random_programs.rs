@@ -1,4 +1,4 @@
-//! Test that random C functions compute the same results before and after the linker rewrites them.
+//! Tests that random C functions compute the same results before and after the linker rewrites them.
 //!
 //! The functions have up to 30 bytes of arguments, of which 18 fit into registers. Their arrays are on the stack, they
 //! call one another, and a timer interrupts them.
@@ -13,18 +13,18 @@ use lizard_host_tests::scaled;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
-use crate::address_of;
+use crate::ram_address;
 
-/// Number of functions of one program, as many as fit into 32 KB.
+/// The number of functions of one program. No more functions fit into 32 KB.
 const FUNCTION_COUNT: usize = 40;
 
-/// Number of functions in a group. A function calls only functions of its group, so that the stack is large enough.
+/// The number of functions in a group. A function calls only functions of its group, so that the stack is large enough.
 const GROUP_SIZE: usize = 5;
 
-/// Number of programs in an ordinary run. Together they have 800 functions.
+/// The number of programs in an ordinary run. Together they have 800 functions.
 const PROGRAM_COUNT: u64 = 20;
 
-/// Types of arguments, each with the bytes of registers that an argument of this type takes.
+/// The types of arguments, each with the number of bytes that an argument of this type takes.
 const TYPES: [(&str, usize); 5] = [
     ("uint8_t", 2),
     ("uint16_t", 2),
@@ -33,31 +33,34 @@ const TYPES: [(&str, usize); 5] = [
     ("int8_t", 2),
 ];
 
-/// Returns a random expression with these variables.
-fn random_expression(rng: &mut Rng, names: &[String], depth: u8) -> String {
+/// Returns a random C expression with these variables.
+fn random_expression(rng: &mut Rng, variables: &[String], depth: u8) -> String {
     if depth > 1 || rng.u8(..4) == 0 {
-        return match rng.usize(..=names.len()) {
-            index if index < names.len() => names[index].clone(),
+        return match rng.usize(..=variables.len()) {
+            index if index < variables.len() => variables[index].clone(),
             _ => format!("{}u", rng.u32(..70_000)),
         };
     }
-    let [a, b] = [0; 2].map(|_| random_expression(rng, names, depth + 1));
+    let [left, right] = [0; 2].map(|_| random_expression(rng, variables, depth + 1));
     match rng.usize(..9) {
-        operator @ 0..5 => format!("({a} {} {b})", ["+", "-", "^", "&", "|"][operator]),
-        operator @ 5..7 => format!("({a} {} ({b} & 7))", ["<<", ">>"][operator - 5]),
-        7 => format!("((uint16_t){a} * (uint16_t){b})"),
-        _ => format!("({a} {} {b})", rng.choice(["<", "==", "!="]).unwrap()),
+        operator @ 0..5 => format!("({left} {} {right})", ["+", "-", "^", "&", "|"][operator]),
+        operator @ 5..7 => format!("({left} {} ({right} & 7))", ["<<", ">>"][operator - 5]),
+        7 => format!("((uint16_t){left} * (uint16_t){right})"),
+        _ => format!(
+            "({left} {} {right})",
+            rng.choice(["<", "==", "!="]).unwrap()
+        ),
     }
 }
 
 /// Writes the next function, which may call an earlier one, and adds its argument types to `signatures`.
 fn random_function(rng: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> String {
     let number = signatures.len();
-    let (mut types, mut bytes) = (Vec::new(), 0);
+    let (mut types, mut argument_bytes) = (Vec::new(), 0);
     for _ in 0..rng.usize(5..11) {
-        let (name, size) = TYPES[rng.usize(..TYPES.len())];
-        bytes += size;
-        if bytes <= 30 {
+        let (name, type_bytes) = TYPES[rng.usize(..TYPES.len())];
+        argument_bytes += type_bytes;
+        if argument_bytes <= 30 {
             types.push(name);
         }
     }
@@ -65,42 +68,43 @@ fn random_function(rng: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> St
     let parameters: Vec<String> = parameters
         .map(|(index, name)| format!("{name} p{index}"))
         .collect();
-    let mut names: Vec<String> = (0..types.len()).map(|index| format!("p{index}")).collect();
-    let arguments = names.clone();
-    let [room_size, limit] = [rng.usize(3..30), rng.usize(..60_000)];
-    let last_index = room_size - 1;
-    names.push("i".into());
-    let fill_value = random_expression(rng, &names, 0);
-    names.push("sum".into());
-    let [condition, subtrahend] = [0; 2].map(|_| random_expression(rng, &names, 0));
-    names.retain(|name| name != "i");
+    let mut variables: Vec<String> = (0..types.len()).map(|index| format!("p{index}")).collect();
+    let arguments = variables.clone();
+    let [buffer_size, limit] = [rng.usize(3..30), rng.usize(..60_000)];
+    let last_index = buffer_size - 1;
+    variables.push("i".into());
+    let fill_value = random_expression(rng, &variables, 0);
+    variables.push("sum".into());
+    let [condition, subtrahend] = [0; 2].map(|_| random_expression(rng, &variables, 0));
+    variables.retain(|name| name != "i");
     let group_start = number / GROUP_SIZE * GROUP_SIZE;
     let call = if number > group_start && rng.u8(..5) > 0 {
         let callee = rng.usize(group_start..number);
         let values = signatures[callee].iter();
-        let values = values.map(|name| format!("({name}){}", random_expression(rng, &names, 1)));
+        let values =
+            values.map(|name| format!("({name}){}", random_expression(rng, &variables, 1)));
         let values: Vec<String> = values.collect();
         format!("sum ^= f{callee}({});", values.join(", "))
     } else {
         String::new()
     };
-    let [odd_test, addend] = [0; 2].map(|_| random_expression(rng, &arguments, 0));
+    let [parity_value, addend] = [0; 2].map(|_| random_expression(rng, &arguments, 0));
     signatures.push(types);
     format!(
         "__attribute__((noinline, noclone)) uint16_t f{number}({parameters}) {{
-            volatile uint8_t room[{room_size}]; uint8_t copy[{room_size}];
+            volatile uint8_t buffer[{buffer_size}]; uint8_t copy[{buffer_size}];
             uint16_t sum = 0; uint8_t flag = 0;
-            for (uint8_t i = 0; i < {room_size}; i++) {{
-                room[i] = {fill_value}; copy[i] = room[i] ^ table[i];
+            for (uint8_t i = 0; i < {buffer_size}; i++) {{
+                buffer[i] = {fill_value}; copy[i] = buffer[i] ^ table[i];
             }}
             asm volatile(\"\" :: \"m\"(copy));
-            for (uint8_t i = 0; i < {room_size}; i++) {{
-                sum = sum * 31 + copy[i] + room[{last_index} - i];
+            for (uint8_t i = 0; i < {buffer_size}; i++) {{
+                sum = sum * 31 + copy[i] + buffer[{last_index} - i];
                 if ({condition}) flag = !flag;
                 if (flag && sum > {limit}u) sum -= {subtrahend};
             }}
             {call}
-            if (!({odd_test} & 1)) sum += {addend};
+            if (!({parity_value} & 1)) sum += {addend};
             return sum ^ flag; }}\n",
         parameters = parameters.join(", "),
     )
@@ -140,8 +144,8 @@ fn random_program(rng: &mut Rng) -> String {
 }
 
 /// Runs a program and returns the two return values of each function.
-fn run_for_results(image: &Image) -> Vec<[u8; 4]> {
-    let [done_address, results_address] = ["done", "results"].map(|name| address_of(image, name));
+fn run_for_return_values(image: &Image) -> Vec<[u8; 4]> {
+    let [done_address, results_address] = ["done", "results"].map(|name| ram_address(image, name));
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     for _ in 0..200 {
         uno.run_ms(5);
@@ -159,9 +163,9 @@ fn run_for_results(image: &Image) -> Vec<[u8; 4]> {
     (0..FUNCTION_COUNT as u16).map(values_of).collect()
 }
 
-/// Returns the functions of a random program that return other values after the linker has rewritten it, and true if
-/// the linker has rewritten a function. `None` if avr-gcc fails, because it runs out of registers or a branch is too
-/// far.
+/// Returns the functions of a random program that return other values after the linker has rewritten the program, and
+/// true if the linker has rewritten a function. `None` if avr-gcc fails, because it runs out of registers or a branch
+/// is too far.
 fn find_differences(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = compile_to_object(&random_program(&mut Rng::with_seed(seed))).ok()?;
     let plain_image = link("", &object).ok()?;
@@ -170,12 +174,12 @@ fn find_differences(seed: u64) -> Option<(Vec<usize>, bool)> {
         .expect("the object is for an AVR");
     let shrunk_image = link(ROUTINES, &object).expect("the rewritten object links");
     let [plain_results, shrunk_results] = [
-        run_for_results(&plain_image),
-        run_for_results(&shrunk_image),
+        run_for_return_values(&plain_image),
+        run_for_return_values(&shrunk_image),
     ];
-    let differing =
+    let differing_functions =
         (0..FUNCTION_COUNT).filter(|&number| plain_results[number] != shrunk_results[number]);
-    Some((differing.collect(), savings.frames > 0))
+    Some((differing_functions.collect(), savings.frames > 0))
 }
 
 #[test]
@@ -183,23 +187,23 @@ fn random_functions_with_arguments_on_the_stack_compute_the_same() {
     let seed_count = scaled(PROGRAM_COUNT);
     let next_seed = AtomicU64::new(0);
     let take_seed = || Some(next_seed.fetch_add(1, Relaxed)).filter(|&seed| seed < seed_count);
-    let run_share = || -> Vec<_> {
+    let run_worker = || -> Vec<_> {
         iter::from_fn(take_seed)
             .filter_map(|seed| Some((seed, find_differences(seed)?)))
             .collect()
     };
     let thread_count = thread::available_parallelism().map_or(1, usize::from);
     let tried_programs: Vec<_> = thread::scope(|scope| {
-        let shares: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_share)).collect();
-        let finished = shares.into_iter().map(|share| share.join());
-        finished
+        let workers: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_worker)).collect();
+        let results = workers.into_iter().map(|worker| worker.join());
+        results
             .flat_map(|result| result.expect("no thread panics"))
             .collect()
     });
-    for (seed, (differing, is_rewritten)) in &tried_programs {
+    for (seed, (differing_functions, is_rewritten)) in &tried_programs {
         assert!(
-            differing.is_empty(),
-            "program {seed}: these functions differ: {differing:?}"
+            differing_functions.is_empty(),
+            "program {seed}: these functions differ: {differing_functions:?}"
         );
         assert!(is_rewritten, "program {seed}: no function was rewritten");
     }

@@ -1,5 +1,5 @@
 //! Shell for tests: starts a command in the root of the repository as a user does. While the command runs, a test reads
-//! its output, types lines, and ends it with Ctrl-C.
+//! its output, types lines, and ends the command with Ctrl-C.
 //!
 //! A shell without job control makes the commands that it starts with `&` ignore Ctrl-C, and a process inherits the
 //! ignored signals from its parent. If these tests are started with `&`, a command would therefore ignore Ctrl-C until
@@ -34,10 +34,10 @@ impl Shell {
         let mut command = Command::new("env");
         command.args(["--default-signal=INT,QUIT", program]);
         command.args(arguments).current_dir(root());
-        // A user's shell does not have the variables of the cargo and make that run this test.
+        // A user's shell does not have the variables of cargo and make, which run this test.
         for (name, _) in std::env::vars() {
-            let is_of_cargo = name.starts_with("CARGO") && name != "CARGO_HOME";
-            if is_of_cargo || name.starts_with("MAKE") || name == "MFLAGS" {
+            let is_cargo_variable = name.starts_with("CARGO") && name != "CARGO_HOME";
+            if is_cargo_variable || name.starts_with("MAKE") || name == "MFLAGS" {
                 command.env_remove(name);
             }
         }
@@ -51,7 +51,7 @@ impl Shell {
             spawn_reader(child.stdout.take().expect("a pipe"), &screen),
             spawn_reader(child.stderr.take().expect("a pipe"), &screen),
         ];
-        // The pipe stays open, since ravedude's console reads without a pause at the end of its input.
+        // The pipe stays open, because ravedude's console would read without a pause at the end of its input.
         let keyboard = child.stdin.take().expect("a pipe");
         let child = Mutex::new(child);
         Self {
@@ -71,14 +71,14 @@ impl Shell {
 
     /// Returns everything printed by a command that has ended. Waits for the last output, which may still be in a pipe.
     pub fn last_screen(&self) -> String {
-        let is_read = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
+        let is_complete = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
         let screen = self.screen();
-        assert!(is_read, "waited {LIMIT} for the rest of\n{screen}");
+        assert!(is_complete, "waited {LIMIT} for the rest of\n{screen}");
         screen
     }
 
     /// Types a line.
-    pub fn say(&mut self, line: &str) {
+    pub fn type_line(&mut self, line: &str) {
         writeln!(self.keyboard, "{line}").expect("the command reads");
     }
 

@@ -218,7 +218,7 @@ impl Description {
             });
         let gaits = robot.gaits().iter().map(|gait| GaitEntry {
             name: gait.name().to_string(),
-            command: gait.name().replace('-', " "),
+            command: gait.command(),
             period: gait.period(),
             moves: gait.has_movement(),
             reversed: gait.is_reversed(),
@@ -241,9 +241,7 @@ impl Description {
             start: START_ADDRESS,
             servos: servos.collect(),
             gaits: gaits.collect(),
-            routines: routines
-                .map(|routine| routine.name().replace('-', " "))
-                .collect(),
+            routines: routines.map(|routine| routine.command()).collect(),
             lengths: lengths_of(robot),
             plate: robot.plate().into(),
             margins: [

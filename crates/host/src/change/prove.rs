@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use lizard_proof::{PIECES, PairSample, Proof, STEPS_BAND, Tally, Walk};
+use lizard_proof::{PIECES, PairSample, Proof, STEPS_BAND, Walk};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
@@ -100,17 +100,7 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
         "part        servos          pairs   type-2   type-1      mm    margin      mm   wrong"
     )?;
     for finding in &proof.findings {
-        let Tally {
-            pairs,
-            type2,
-            type1,
-            leg,
-            travel,
-            margin_band,
-            length_band,
-            wrong,
-            ..
-        } = finding.tally;
+        let tally = &finding.tally;
         let format_value = |value: Option<f64>, digits: usize| {
             value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
         };
@@ -119,13 +109,13 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
             "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
             finding.part,
             finding.servos.join(" "),
-            format_grouped(pairs as f64, 0),
-            format_value(type2.or(leg), 5),
-            format_value(type1, 5),
-            format_value(travel, 4),
-            format_value(margin_band, 6),
-            format_value(length_band, 4),
-            wrong
+            format_grouped(tally.pair_count as f64, 0),
+            format_value(tally.max_type2_error.or(tally.max_leg_error), 5),
+            format_value(tally.max_type1_error, 5),
+            format_value(tally.max_travel_error, 4),
+            format_value(tally.max_margin_difference, 6),
+            format_value(tally.max_length_difference, 4),
+            tally.wrong_count
         )?;
     }
     for finding in &proof.findings {

@@ -1,7 +1,7 @@
 //! Adds a routine that uses a button, a nose contact and up to nine gaits, for measurements and random
 //! tests.
 
-use lizard_robot::{Error, Robot};
+use lizard_robot::{Error, Robot, command_of};
 
 use super::sim::tour;
 
@@ -44,7 +44,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
     }
     let gaits: Vec<String> = tour::moving_gaits(&robot)
         .iter()
-        .map(|name| name.replace('-', " "))
+        .map(|name| command_of(name))
         .collect();
     let first_gait = gaits.first().map_or("stand 1 s", String::as_str);
     let mut steps = vec!["wait button".to_owned(), format!("{first_gait} until nose")];

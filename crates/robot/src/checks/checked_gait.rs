@@ -10,7 +10,7 @@ use lizard_kinematics::Pose;
 use crate::checks::accuracy::{self, TableError};
 use crate::checks::audit::{self, Audit, LimitBreach};
 use crate::file::{Checked, Fault};
-use crate::gaits::{Bars, Gait, Stride};
+use crate::gaits::{Bars, Gait, Stride, command_of};
 use crate::measures::Measures;
 use crate::measures::servo::FORWARD_TURN_SIGN;
 use crate::tables::Tables;
@@ -54,9 +54,14 @@ impl CheckedGait {
         &self.tables.gaits[self.index]
     }
 
-    /// Name of the gait; with its dashes replaced by blanks, it is also the console command.
+    /// Name of the gait.
     pub fn name(&self) -> &str {
         &self.gait.name
+    }
+
+    /// The console command that starts the gait.
+    pub fn command(&self) -> String {
+        command_of(&self.gait.name)
     }
 
     /// Index of the gait in the file.

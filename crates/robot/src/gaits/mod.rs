@@ -20,3 +20,8 @@ pub use path_leg::PathLeg;
 pub use routine::Routine;
 pub use waveform::Waveform;
 pub(crate) use waveform::canonicalize;
+
+/// Returns the console command that starts the gait or routine of this name: dashes become blanks.
+pub fn command_of(name: &str) -> String {
+    name.replace('-', " ")
+}

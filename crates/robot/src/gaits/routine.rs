@@ -5,6 +5,7 @@ use lizard_core::console::command::MAX_CYCLES;
 use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
 
 use crate::file::{Checked, Fault, Section, hint};
+use crate::gaits::command_of;
 use crate::gaits::define::{check_boot_keys, check_name};
 use crate::measures::{INPUT_NAMES, Inputs};
 use crate::units::FRAMES_PER_SECOND;
@@ -30,9 +31,14 @@ pub struct Routine {
 }
 
 impl Routine {
-    /// Name of the routine; with its dashes replaced by blanks, it is also the console command.
+    /// Name of the routine.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The console command that starts the routine.
+    pub fn command(&self) -> String {
+        command_of(&self.name)
     }
 
     /// The routine's step records in the section: one for each step. If an input ends a step, a record of that input

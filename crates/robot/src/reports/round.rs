@@ -61,7 +61,7 @@ impl Round {
     pub fn simulate_sweeps(robot: &Robot, routine: &Routine) -> impl Iterator<Item = [f64; 4]> {
         let mut running = RunningRobot::power_on(*robot.without_contacts().firmware());
         running.run_frames(STANDING_FRAMES);
-        running.send_line(&format!("{} 1", routine.name().replace('-', " ")));
+        running.send_line(&format!("{} 1", routine.command()));
         let mut is_done = false;
         std::iter::from_fn(move || {
             if is_done {

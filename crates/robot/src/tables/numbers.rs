@@ -50,7 +50,7 @@ pub(crate) fn section_content(
     for routine in routines {
         gaits.push(routine.record(steps.len(), names.len()));
         steps.extend_from_slice(routine.step_records());
-        names.extend(routine.name().replace('-', " ").bytes());
+        names.extend(routine.command().bytes());
     }
     Content {
         name: name.to_string(),

@@ -9,7 +9,7 @@ use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES
 use lizard_core::numbers::units::CYCLE;
 
 use crate::file::{Checked, Fault};
-use crate::gaits::{Gait, Stride, Waveform, canonicalize};
+use crate::gaits::{Gait, Stride, Waveform, canonicalize, command_of};
 use crate::measures::servo::{FORWARD_TURN_SIGN, SERVO_NAMES};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
 
@@ -94,7 +94,7 @@ impl Tables {
                 ]
                 .map(channel_of),
             });
-            names.extend(gait.name.replace('-', " ").bytes());
+            names.extend(command_of(&gait.name).bytes());
         }
         Ok(Self {
             waves: waves.collect(),
@@ -291,7 +291,7 @@ mod tests {
                     firmware.gait_name(gait_id(&robot, gait.index())).collect();
                 assert_eq!(
                     String::from_utf8(console_name).expect("the name is ASCII"),
-                    gait.name().replace('-', " "),
+                    gait.command(),
                     "{name}"
                 );
             }

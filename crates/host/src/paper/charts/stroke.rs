@@ -111,10 +111,7 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
         round_decimals(max_travel, 1)
     );
     group
-        .add(
-            text_start(&gait.name().replace('-', " "), title_point, 17.0)
-                .set("font-weight", "bold"),
-        )
+        .add(text_start(&gait.command(), title_point, 17.0).set("font-weight", "bold"))
         .add(text(
             &range_text,
             (plot.corner.0 + plot.size.0, title_point.1),

@@ -4,7 +4,7 @@ use std::iter::zip;
 use std::path::Path;
 use std::time::Instant;
 
-use lizard_robot::Robot;
+use lizard_robot::{CheckedGait, Robot, command_of};
 use simulated_uno::{Call, Fidelity, Pin};
 
 use super::exactness::Exactness;
@@ -258,11 +258,6 @@ pub fn longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
     Ok(max_cycles)
 }
 
-/// The console command of a gait.
-fn command_of(gait: &str) -> String {
-    gait.replace('-', " ")
-}
-
 /// A board that has executed one command for some time on an idle serial line, and the cycles of that time.
 struct GaitRun {
     board: SimulatedBoard,
@@ -331,7 +326,7 @@ fn start_gait_on_saturated_line(
 
 /// Commands for every kind of motion: each gait, a pose far from neutral, the neutral pose, and `stop`.
 fn motion_commands(robot: &Robot) -> Vec<String> {
-    let gait_commands = robot.gaits().iter().map(|gait| command_of(gait.name()));
+    let gait_commands = robot.gaits().iter().map(CheckedGait::command);
     let mut commands: Vec<String> = gait_commands.collect();
     commands.push(pose_command(robot, [-35.0, 0.0, -35.0, 0.0]));
     commands.push(pose_command(robot, [0.0; 4]));
@@ -389,7 +384,7 @@ fn time_calls_per_command(
 /// Lines that take long to execute. Some have an unknown name that begins like a gait's name: of all gaits, the one
 /// whose name has the most leading characters in common with the others.
 fn slow_lines(robot: &Robot) -> Vec<String> {
-    let gait_names = || robot.gaits().iter().map(|gait| command_of(gait.name()));
+    let gait_names = || robot.gaits().iter().map(CheckedGait::command);
     let total_shared_length = |line: &String| -> usize {
         let shared_length = |name: String| {
             zip(name.bytes(), line.bytes())

@@ -1,5 +1,7 @@
 //! A script: commands for the robot, each with the time at which it is sent.
 
+use lizard_robot::command_of;
+
 use super::press::ContactChange;
 
 /// A command and the time at which it is sent.
@@ -60,7 +62,6 @@ impl Script {
         let start_of = |index: usize| {
             STAND_MS + gaits_ms * 5 * index as u64 / (4 + 5 * (gaits.len() as u64 - 1))
         };
-        let command_of = |gait: &str| gait.replace('-', " ");
         let mut steps: Vec<Step> = gaits
             .iter()
             .enumerate()

@@ -8,7 +8,7 @@ mod robust;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_robot::{CheckedGait, Robot, Round, Routine, WITHOUT_CONTACTS_NOTE};
+use lizard_robot::{CheckedGait, Robot, Round, Routine, WITHOUT_CONTACTS_NOTE, command_of};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, State, Uno};
 
@@ -157,7 +157,7 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
 fn round_script(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;
     let round = Round::of(robot, routine);
-    let name = routine.name().replace('-', " ");
+    let name = routine.command();
     let round_end_ms = STAND_MS + (1000.0 * round.seconds).ceil() as u64;
     let step_at = |ms, command: &str| Step {
         ms,
@@ -199,7 +199,7 @@ pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     for name in gaits {
         steps.push(Step {
             ms,
-            command: name.replace('-', " "),
+            command: command_of(name),
         });
         let period = robot.gait(name).map_or(1.0, |gait| gait.period());
         ms += STAND_MS + (1000.0 * CYCLES_PER_GAIT * period).ceil() as u64;
