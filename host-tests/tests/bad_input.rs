@@ -1,6 +1,6 @@
-//! Robustness tests of the core, compiled for this machine: two million random bytes, two million lines that are nearly
-//! valid and two thousand EEPROM contents. Each line must get one answer, no pulse may be outside the limits, and the
-//! EEPROM must always be valid.
+//! Robustness tests of the core, compiled for this machine. The inputs are two million random bytes, two million nearly
+//! valid lines and two thousand EEPROM contents. Each line must get one answer, no pulse may be outside the limits, and
+//! the EEPROM must always be valid.
 //!
 //! With `LIZARD_FUZZ=3`, as in continuous integration, the tests take three times as many inputs.
 
@@ -15,13 +15,13 @@ use lizard_host_tests::{robot, scaled};
 #[path = "firmware/random_lines.rs"]
 mod random_lines;
 
-/// The number of bytes, the number of lines, and a thousand times the number of EEPROM contents.
+/// Number of random bytes, and also of lines. One EEPROM content is tested for each thousand of them.
 const INPUT_COUNT: u64 = 2_000_000;
 
 /// Number of threads of a test.
 const THREAD_COUNT: u64 = 2;
 
-/// Runs a test on several threads, each with its own random numbers and its share of the count.
+/// Runs a test on several threads. Each thread has its own random numbers and gets its share of [`INPUT_COUNT`].
 fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
         let spawn_test = |thread_number| {
@@ -44,14 +44,14 @@ fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
 fn millions_of_random_bytes_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
         let mut board = Board::new(robot(), Eeprom::blank());
-        for n in 0..count {
+        for byte_index in 0..count {
             // Line ends are more frequent than in random bytes.
             let byte = if rng.u8(..32) == 0 { b'\n' } else { rng.u8(..) };
             board.send_byte(byte);
-            if n % 64 == 0 {
+            if byte_index % 64 == 0 {
                 board.run_frame();
             }
-            if n % 65_536 == 0 {
+            if byte_index % 65_536 == 0 {
                 board.assert_memory_is_valid();
             }
         }
@@ -68,16 +68,16 @@ fn millions_of_lines_that_are_nearly_valid_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
         let mut board = Board::new(robot(), Eeprom::blank());
         let mut accepted_count = 0u64;
-        for n in 0..count {
+        for line_index in 0..count {
             for byte in random_lines::nearly_valid_line(rng) {
                 board.send_byte(byte);
             }
             board.send_byte(b'\n');
             accepted_count += u64::from(board.output().contains("ok "));
-            if n % 16 == 0 {
+            if line_index % 16 == 0 {
                 board.run_frame();
             }
-            if n % 4_096 == 0 {
+            if line_index % 4_096 == 0 {
                 board.assert_memory_is_valid();
             }
         }
@@ -89,15 +89,15 @@ fn millions_of_lines_that_are_nearly_valid_do_no_harm_to_the_core() {
 fn thousands_of_memories_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
         for _ in 0..count / 1_000 {
-            // Changes one byte, three bytes, or about as many bytes as there are.
+            // Changes one byte, three bytes or most bytes.
             let change_count = [1, 3, 3 * CONTENT_BYTES][rng.usize(..3)];
-            let mut data = [0; 3 * CONTENT_BYTES + 12];
+            let mut input = [0; 3 * CONTENT_BYTES + 12];
             for _ in 0..change_count {
-                data[rng.usize(..3 * CONTENT_BYTES)] = rng.u8(..);
+                input[rng.usize(..3 * CONTENT_BYTES)] = rng.u8(..);
             }
-            let patches = rng.usize(..=4);
-            rng.fill(&mut data[3 * CONTENT_BYTES..]);
-            lizard_fuzz::check_memory(&data[..3 * CONTENT_BYTES + 3 * patches]);
+            let patch_count = rng.usize(..=4);
+            rng.fill(&mut input[3 * CONTENT_BYTES..]);
+            lizard_fuzz::check_memory(&input[..3 * CONTENT_BYTES + 3 * patch_count]);
         }
     });
 }

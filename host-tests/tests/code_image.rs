@@ -1,7 +1,7 @@
-//! Tests that the program `lizard` contains the same firmware code as the source builds.
+//! Tests that the program `lizard` contains the firmware code that the source builds.
 //!
 //! The program contains `firmware/code.hex`, for users without a compiler. If the source changes and this file does
-//! not, a board behaves differently from the source.
+//! not, a board does not behave as the source says.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -20,18 +20,18 @@ const OUT_OF_DATE_MESSAGE: &str =
     "firmware/code.hex is not what the source builds: run `make code-image` and commit it";
 
 /// Returns the code of an image, from address 0 to the robot's section. Unused bytes are 0xff.
-fn code_of(image: &Image) -> Vec<u8> {
-    let mut flash = image.flash();
-    flash.resize(START_ADDRESS.into(), 0xff);
-    flash
+fn code_bytes(image: &Image) -> Vec<u8> {
+    let mut code = image.flash();
+    code.resize(START_ADDRESS.into(), 0xff);
+    code
 }
 
 /// Returns the image that the program `lizard` contains, with the section of the robot under test added.
 fn embedded_image() -> Image {
     let mut image = Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX");
-    let space = u32::from(START_ADDRESS)..0x7e00;
+    let section_addresses = u32::from(START_ADDRESS)..0x7e00;
     image
-        .replace(space, &robot().section())
+        .replace(section_addresses, &robot().section())
         .expect("the section fits");
     image
 }
@@ -81,12 +81,12 @@ fn record_minute(image: Image) -> Recording {
 
 #[test]
 fn the_program_contains_the_code_that_the_source_builds() {
-    let embedded_code = code_of(&Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX"));
+    let embedded_code = code_bytes(&Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX"));
     let mut built_image = FirmwareBench::image();
     built_image
         .replace(u32::from(START_ADDRESS)..0x7e00, &[])
         .expect("the robot is removed");
-    let built_code = code_of(&built_image);
+    let built_code = code_bytes(&built_image);
     let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
     let recorded_versions = recorded_versions.expect("firmware/tools.txt");
     if recorded_versions == installed_tool_versions() {
@@ -100,8 +100,8 @@ fn the_program_contains_the_code_that_the_source_builds() {
     }
     // Writes to stderr directly, because the test harness hides the output of `eprintln!` if the test passes.
     let note = format!(
-        "code_image: firmware/code.hex was made by other tools than those here, so its bytes are \
-         not compared, but what both do in a minute. It was made by\n{recorded_versions}and here are\n{}",
+        "code_image: the installed tools differ from the tools that made firmware/code.hex, so the test compares \
+         a minute of behaviour instead of the bytes. Recorded:\n{recorded_versions}Installed:\n{}",
         installed_tool_versions()
     );
     std::io::stderr()

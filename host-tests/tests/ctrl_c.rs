@@ -20,8 +20,8 @@ fn ctrl_c_ends_a_command_that_reads_and_prints() {
 
 #[test]
 fn ctrl_c_ends_a_command_even_if_the_tests_ignore_it() {
-    // If a shell without job control starts a program with `&`, the program ignores SIGINT. Programs in the shell of
-    // the tests must not inherit that.
+    // If a shell without job control starts a program with `&`, the program ignores SIGINT. Programs in the tests'
+    // shell must not inherit this setting.
     let test_program = std::env::current_exe().expect("this test is running");
     let mut command = Command::new("env");
     command.args(["--ignore-signal=INT"]).arg(test_program);

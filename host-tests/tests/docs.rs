@@ -1,4 +1,4 @@
-//! Tests of the documentation: its pages name only tests, code items, links and files that exist.
+//! Tests of the documentation. Its pages may name only tests, code items, links and files that exist.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,10 +16,10 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
     let (_, table) = page.split_once("## Each of them").expect("the table");
     let (table, _) = table.split_once("\n## ").expect("the next section");
     let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
-    let mut count = 0;
+    let mut row_count = 0;
     for row in rows {
-        let parts: Vec<&str> = row.split('`').collect();
-        let [.., file, _, test, _] = parts[..] else {
+        let pieces: Vec<&str> = row.split('`').collect();
+        let [.., file, _, test_name, _] = pieces[..] else {
             panic!("the row names no test: {row}");
         };
         let folders = [
@@ -31,12 +31,12 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
             .find_map(|folder| fs::read_to_string(folder.join(file)).ok());
         let source = source.unwrap_or_else(|| panic!("no file {file}"));
         assert!(
-            source.contains(&format!("#[test]\nfn {test}()")),
-            "{file} has no {test}"
+            source.contains(&format!("#[test]\nfn {test_name}()")),
+            "{file} has no {test_name}"
         );
-        count += 1;
+        row_count += 1;
     }
-    assert!(count > 20, "{count}");
+    assert!(row_count > 20, "{row_count}");
 }
 
 /// Makes the table rows `| offset | bytes | field |` of a type, in the order of the given fields. The code compiles
@@ -55,19 +55,19 @@ macro_rules! rows {
     }};
 }
 
-/// Returns the size of the field that a getter returns, bytes.
+/// Returns the size, in bytes, of the field that a getter returns.
 fn field_size<T, F>(_: fn(&T) -> &F) -> usize {
     size_of::<F>()
 }
 
 #[test]
 fn the_page_of_the_firmware_has_the_offset_and_size_of_every_field_of_a_robots_section() {
-    let header = rows!(
+    let header_rows = rows!(
         Header,
         0,
         [magic, format, length, crc, name, hash, servo_hash]
     );
-    let numbers = rows!(
+    let number_rows = rows!(
         Numbers,
         size_of::<Header>(),
         [
@@ -88,32 +88,37 @@ fn the_page_of_the_firmware_has_the_offset_and_size_of_every_field_of_a_robots_s
         ]
     );
     let row_of_part = |name: &str, bytes: usize| format!("| {name} | {bytes} each |");
-    let parts = [
+    let part_rows = [
         format!("| header | {} |", size_of::<Header>()),
         format!("| numbers | {} |", size_of::<Numbers>()),
         row_of_part("curves", size_of::<Table>()),
         row_of_part("gaits", size_of::<Gait>()),
         row_of_part("waveforms", size_of::<Wave>()),
     ];
-    let flash = [
+    let address_texts = [
         format!("{START_ADDRESS:#x}"),
         format!("{:#x}", START_ADDRESS + SPACE_BYTES),
         format!("{SPACE_BYTES} bytes"),
     ];
     let page = fs::read_to_string(root().join("docs/firmware.md")).expect("the page");
-    let missing: Vec<String> = [&header[..], &numbers[..], &parts[..], &flash[..]]
-        .concat()
-        .into_iter()
-        .filter(|row| !page.contains(row))
-        .collect();
+    let missing_texts: Vec<String> = [
+        &header_rows[..],
+        &number_rows[..],
+        &part_rows[..],
+        &address_texts[..],
+    ]
+    .concat()
+    .into_iter()
+    .filter(|text| !page.contains(text))
+    .collect();
     assert!(
-        missing.is_empty(),
+        missing_texts.is_empty(),
         "docs/firmware.md lacks:\n{}",
-        missing.join("\n")
+        missing_texts.join("\n")
     );
 }
 
-/// Returns the words of a text. Dashes, underscores and slashes are part of a word, as in the paths of crates.
+/// Returns the words of a text. As in the paths of crates, a word may contain dashes, underscores and slashes.
 fn words_of(text: &str) -> BTreeSet<&str> {
     let is_separator = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
     text.split(is_separator).collect()
@@ -129,34 +134,39 @@ fn the_license_says_of_every_crate_whether_it_contains_libsimavr() {
         words_of(text_about_simavr_users),
         words_of(text_about_others),
     );
-    let workspace = fs::read_to_string(root().join("crates/Cargo.toml")).expect("the workspace");
-    let (_, members) = workspace.split_once("members = [").expect("the members");
+    let workspace_manifest =
+        fs::read_to_string(root().join("crates/Cargo.toml")).expect("the workspace");
+    let (_, members) = workspace_manifest
+        .split_once("members = [")
+        .expect("the members");
     let (members, _) = members.split_once(']').expect("the end of the members");
-    let folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
-    assert!(folders.len() > 9, "{folders:?}");
-    for folder in folders {
-        let name = match folder.strip_prefix("../") {
+    let member_folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
+    assert!(member_folders.len() > 9, "{member_folders:?}");
+    for member_folder in member_folders {
+        let crate_folder = match member_folder.strip_prefix("../") {
             Some(name) => name.to_owned(),
-            None => format!("crates/{folder}"),
+            None => format!("crates/{member_folder}"),
         };
-        let manifest = fs::read_to_string(root().join(&name).join("Cargo.toml")).expect(&name);
-        let uses_simavr = name == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
-        let path = &*format!("{name}/");
-        let is_in_lists = [
-            simavr_users.contains(path) || name == "crates/simulated-uno",
-            others.contains(path),
+        let manifest =
+            fs::read_to_string(root().join(&crate_folder).join("Cargo.toml")).expect(&crate_folder);
+        let uses_simavr =
+            crate_folder == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
+        let crate_path = &*format!("{crate_folder}/");
+        let is_listed = [
+            simavr_users.contains(crate_path) || crate_folder == "crates/simulated-uno",
+            others.contains(crate_path),
         ];
         assert_eq!(
-            is_in_lists,
+            is_listed,
             [uses_simavr, !uses_simavr],
-            "LICENSE and {name}/Cargo.toml"
+            "LICENSE and {crate_folder}/Cargo.toml"
         );
     }
 }
 
 #[test]
-fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
-    let mut count = 0;
+fn every_code_item_that_a_page_names_by_its_path_exists() {
+    let mut item_count = 0;
     let pages = fs::read_dir(root().join("docs")).expect("docs/");
     let pages = pages.map(|page| page.expect("a page").path());
     for page in pages.filter(|page| page.extension().is_some_and(|extension| extension == "md")) {
@@ -175,10 +185,10 @@ fn every_item_of_the_code_that_a_page_names_by_its_path_exists() {
                     .any(|keyword| sources.contains(&format!("{keyword} {name}")));
                 assert!(is_declared, "{}: {path} has no {name}", page.display());
             }
-            count += 1;
+            item_count += 1;
         }
     }
-    assert!(count > 0, "no page names an item");
+    assert!(item_count > 0, "no page names an item");
 }
 
 /// Returns the text of all Rust files in a folder and its subfolders.
@@ -211,10 +221,10 @@ fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
 }
 
 /// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain the command
-/// `center`. This word occurs only as the command, while `deadman` also occurs in sentences. `center` has no messages
-/// of its own, so `deadman` stands for it in text.rs.
+/// `center`. This word occurs only as the command, while `deadman` also occurs in sentences. No message names `center`,
+/// so text.rs is searched for `deadman` instead.
 #[test]
-fn a_console_command_has_at_most_seven_files_and_the_docs_name_them() {
+fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
     let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
     let (_, list) = page
         .split_once("**A console command.**")
@@ -256,7 +266,7 @@ fn read_pages() -> Vec<(PathBuf, String)> {
     paths.into_iter().map(read_page).collect()
 }
 
-/// Returns the targets of a page's links and pictures: the texts between `](` and `)`, and those in `src="..."`.
+/// Returns the targets of a page's links and pictures: the texts between `](` and `)`, and the values of `src="..."`.
 fn links_of(text: &str) -> Vec<&str> {
     let texts_between = |start: &'static str, end: char| {
         let pieces = text.split(start).skip(1);
@@ -284,7 +294,7 @@ fn anchors_of(text: &str) -> Vec<String> {
 
 #[test]
 fn every_link_of_a_page_has_an_existing_target() {
-    let mut count = 0;
+    let mut link_count = 0;
     for (page, text) in read_pages() {
         for link in links_of(&text) {
             if link.contains("://") {
@@ -303,10 +313,10 @@ fn every_link_of_a_page_has_an_existing_target() {
                     .any(|candidate| candidate == anchor);
                 assert!(has_anchor, "{}: {link}", page.display());
             }
-            count += 1;
+            link_count += 1;
         }
     }
-    assert!(count > 60, "{count}");
+    assert!(link_count > 60, "{link_count}");
 }
 
 #[test]
@@ -376,13 +386,13 @@ fn the_pages_name_the_current_version() {
         changelog.contains(&format!("\n## {version} (")),
         "CHANGELOG.md"
     );
-    let mut count = 0;
+    let mut version_count = 0;
     for (page, text) in read_pages() {
         // `lizard-0.2.0-page.zip`, `git tag v0.2.0`, `# lizard 0.2.0 tables`.
         for prefix in ["lizard-", "tag v", "# lizard "] {
-            for rest in text.split(prefix).skip(1) {
+            for text_after_prefix in text.split(prefix).skip(1) {
                 let is_end = |c: char| !c.is_ascii_digit() && c != '.';
-                let named_version = rest.split(is_end).next().unwrap_or_default();
+                let named_version = text_after_prefix.split(is_end).next().unwrap_or_default();
                 if named_version.matches('.').count() == 2 {
                     assert_eq!(
                         named_version,
@@ -390,10 +400,10 @@ fn the_pages_name_the_current_version() {
                         "{}: {prefix}{named_version}",
                         page.display()
                     );
-                    count += 1;
+                    version_count += 1;
                 }
             }
         }
     }
-    assert!(count > 10, "{count}");
+    assert!(version_count > 10, "{version_count}");
 }

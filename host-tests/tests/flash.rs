@@ -1,5 +1,5 @@
-//! Tests of `make flash` as in README: cargo, ravedude and avrdude write the image to a new board. The board is
-//! simulated in real time at a pseudo terminal, with the boot loader of a stock UNO in flash.
+//! Tests of `make flash` as README describes it: cargo, ravedude and avrdude write the image to a new board. The board
+//! is simulated in real time at a pseudo terminal, with the boot loader of a stock UNO in its flash.
 //!
 //! `make flash-test` runs these tests after it has installed the tools.
 
@@ -13,7 +13,7 @@ use lizard_time_limit::LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Uno};
 
-/// Frames until all servos are awake.
+/// Number of frames after which all servos are awake.
 const AWAKE_FRAMES: u64 = 60;
 
 /// Starts `make flash` with the board's port.
@@ -23,8 +23,8 @@ fn start_make_flash(desk: &Desk) -> Shell {
 
 /// Runs the board for a number of frames.
 fn run_frames(desk: &mut Desk, count: u64) {
-    let end = desk.uno.cycle() + count * FRAME_CYCLES;
-    let is_in_time = desk.run_until(|uno| uno.cycle() > end);
+    let end_cycle = desk.uno.cycle() + count * FRAME_CYCLES;
+    let is_in_time = desk.run_until(|uno| uno.cycle() > end_cycle);
     assert!(is_in_time, "waited {LIMIT} for {count} frames");
 }
 
@@ -40,7 +40,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     let expected_uno = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
     desk.assert_written(expected_uno.flash());
 
-    // Waits until all four servos are awake, then walks two steps.
+    // Waits until all four servos are awake, then walks for two gait cycles.
     shell.type_line("stand");
     desk.wait_for_text(&shell, "ok stand");
     run_frames(&mut desk, AWAKE_FRAMES);
@@ -53,8 +53,8 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
         .edges
         .iter()
         .find(|edge| edge.is_rising && edge.pin == pins[0]);
-    let start = first_edge.expect("A1 has a pulse").cycle;
-    let walked_widths: Vec<[u64; 4]> = group_frames(&desk.edges, pins, start, 100)
+    let start_cycle = first_edge.expect("A1 has a pulse").cycle;
+    let walked_widths: Vec<[u64; 4]> = group_frames(&desk.edges, pins, start_cycle, 100)
         .iter()
         .map(Frame::widths)
         .collect();
@@ -73,7 +73,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
         bench_widths
             .windows(walked_widths.len())
             .any(|window| window == walked_widths),
-        "the robot walks as on the bench; pulses in cycles: {walked_widths:?}"
+        "the pulses differ from those of the bench, cycles: {walked_widths:?}"
     );
     shell.interrupt();
 }
@@ -84,7 +84,7 @@ fn an_upload_keeps_the_eeprom() {
     let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
     desk.uno.set_eeprom(&eeprom);
     let mut shell = start_make_flash(&desk);
-    // The EEPROM is compared before the firmware can write to it.
+    // Compares the EEPROM before the firmware can write to it.
     desk.wait_for_text(&shell, "bytes of flash verified");
     assert!(
         desk.uno.eeprom() == eeprom,
@@ -140,7 +140,7 @@ fn a_byte_that_changes_after_it_was_written_ends_the_upload() {
 #[test]
 fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let mut desk = Desk::with_new_uno();
-    // A boot loader that does nothing: `rjmp .-2`.
+    // Replaces the boot loader by an endless loop: `rjmp .-2`.
     desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = start_make_flash(&desk);
     let screen = desk.run_until_exit(&shell);

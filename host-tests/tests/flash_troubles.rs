@@ -1,4 +1,4 @@
-//! Tests of the error messages of `make flash`. They need no board, and leave a connected board alone.
+//! Tests of the error messages of `make flash`. The tests need no board, and do not use a connected board.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -10,16 +10,22 @@ use lizard_time_limit::LIMIT;
 use simulated_uno::Port;
 use tempfile::TempDir;
 
-/// Runs `scripts/flash --check` on the serial ports of a folder. Returns the script's error output, and true if the
+/// Runs `scripts/flash --check` on the serial ports in a folder. Returns the script's error output, and true if the
 /// script succeeds. `user_command` runs the script as another user; if it is empty, the current user runs the script.
 /// `port` is the value of RAVEDUDE_PORT.
-fn check_ports_as(user_command: &[&str], ports: &Path, port: Option<&Path>) -> (String, bool) {
+fn check_ports_as(
+    user_command: &[&str],
+    port_folder: &Path,
+    port: Option<&Path>,
+) -> (String, bool) {
     let scripts = copy_scripts();
     let script = scripts.path().join("scripts/flash");
     let command_line: Vec<&str> = [user_command, &["bash"]].concat();
     let mut command = Command::new(command_line[0]);
     command.args(&command_line[1..]).arg(script).arg("--check");
-    command.env("FLASH_DEV", ports).env_remove("RAVEDUDE_PORT");
+    command
+        .env("FLASH_DEV", port_folder)
+        .env_remove("RAVEDUDE_PORT");
     if let Some(port) = port {
         command.env("RAVEDUDE_PORT", port);
     }
@@ -28,8 +34,8 @@ fn check_ports_as(user_command: &[&str], ports: &Path, port: Option<&Path>) -> (
     (output_text, output.status.success())
 }
 
-fn check_ports(ports: &Path) -> (String, bool) {
-    check_ports_as(&[], ports, None)
+fn check_ports(port_folder: &Path) -> (String, bool) {
+    check_ports_as(&[], port_folder, None)
 }
 
 /// True if the tests may run programs as another user.
@@ -70,19 +76,19 @@ fn without_a_board_the_message_says_what_to_connect() {
 }
 
 #[test]
-fn the_only_board_is_used_whichever_usb_chip_it_has() {
-    let ports = create_folder();
-    File::create(ports.path().join("ttyUSB0")).expect("a file");
-    assert_eq!(check_ports(ports.path()), (String::new(), true));
+fn the_only_board_is_used_with_any_usb_chip() {
+    let port_folder = create_folder();
+    File::create(port_folder.path().join("ttyUSB0")).expect("a file");
+    assert_eq!(check_ports(port_folder.path()), (String::new(), true));
 }
 
 #[test]
-fn of_several_boards_one_must_be_named() {
-    let ports = create_folder();
+fn with_several_boards_the_user_must_name_a_port() {
+    let port_folder = create_folder();
     for name in ["ttyACM0", "ttyUSB3"] {
-        File::create(ports.path().join(name)).expect("a file");
+        File::create(port_folder.path().join(name)).expect("a file");
     }
-    let (output_text, has_succeeded) = check_ports(ports.path());
+    let (output_text, has_succeeded) = check_ports(port_folder.path());
     assert!(!has_succeeded);
     assert!(
         output_text.contains("several boards found"),
@@ -92,12 +98,12 @@ fn of_several_boards_one_must_be_named() {
         output_text.contains("make flash RAVEDUDE_PORT="),
         "{output_text}"
     );
-    let named_port = ports.path().join("ttyUSB3");
-    assert!(check_ports_as(&[], ports.path(), Some(&named_port)).1);
+    let named_port = port_folder.path().join("ttyUSB3");
+    assert!(check_ports_as(&[], port_folder.path(), Some(&named_port)).1);
 }
 
 #[test]
-fn a_port_that_is_not_there_is_named() {
+fn a_missing_port_is_named_in_the_message() {
     let missing_port = Path::new("/dev/no-such-port");
     let (output_text, has_succeeded) =
         check_ports_as(&[], create_folder().path(), Some(missing_port));
@@ -113,14 +119,14 @@ fn a_port_that_is_not_there_is_named() {
 }
 
 #[test]
-fn a_port_that_another_program_has_open_names_the_program() {
+fn the_message_names_the_program_that_has_the_port_open() {
     let port = Port::new().expect("a pseudo terminal");
-    let ports = create_folder();
-    symlink(port.path(), ports.path().join("ttyACM0")).expect("a link");
-    assert_eq!(check_ports(ports.path()), (String::new(), true));
+    let port_folder = create_folder();
+    symlink(port.path(), port_folder.path().join("ttyACM0")).expect("a link");
+    assert_eq!(check_ports(port_folder.path()), (String::new(), true));
     let mut options = OpenOptions::new();
     let open_port = options.read(true).write(true).open(port.path());
-    let (output_text, has_succeeded) = check_ports(ports.path());
+    let (output_text, has_succeeded) = check_ports(port_folder.path());
     assert!(!has_succeeded);
     let own_process = format!("(process {})", std::process::id());
     assert!(
@@ -128,29 +134,32 @@ fn a_port_that_another_program_has_open_names_the_program() {
         "{output_text}"
     );
     drop(open_port);
-    assert!(check_ports(ports.path()).1);
+    assert!(check_ports(port_folder.path()).1);
 }
 
 #[test]
 fn without_permission_the_message_says_which_group_to_join() {
-    let ports = create_folder();
-    let port = ports.path().join("ttyACM0");
+    let port_folder = create_folder();
+    let port = port_folder.path().join("ttyACM0");
     File::create(&port).expect("a file");
     fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("the test owns the file");
     let nobody_command = ["setpriv", "--reuid=nobody", "--clear-groups"];
     if !is_root() {
         // Only root can run the script as another user. A port that even its owner may not open has the same effect.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
-        let (output_text, has_succeeded) = check_ports_as(&[], ports.path(), None);
+        let (output_text, has_succeeded) = check_ports_as(&[], port_folder.path(), None);
         assert!(!has_succeeded);
         assert!(output_text.contains("may not open"), "{output_text}");
         return;
     }
     let mut chgrp = Command::new("chgrp");
     chgrp.arg("dialout").arg(&port);
-    let chgrp = LIMIT.output(&mut chgrp, b"").expect("chgrp ends");
-    assert!(chgrp.status.success(), "the group dialout is Debian's");
-    let (output_text, has_succeeded) = check_ports_as(&nobody_command, ports.path(), None);
+    let chgrp_output = LIMIT.output(&mut chgrp, b"").expect("chgrp ends");
+    assert!(
+        chgrp_output.status.success(),
+        "the group dialout is Debian's"
+    );
+    let (output_text, has_succeeded) = check_ports_as(&nobody_command, port_folder.path(), None);
     assert!(!has_succeeded);
     assert!(output_text.contains("nobody may not open"), "{output_text}");
     assert!(
@@ -160,16 +169,16 @@ fn without_permission_the_message_says_which_group_to_join() {
 }
 
 #[test]
-fn a_missing_avrdude_says_what_to_install() {
+fn without_avrdude_the_message_says_what_to_install() {
     // Simulates a user who is not root on a machine without packages: dpkg-query finds none, and avrdude and sudo are
     // not on the PATH.
-    let bin = create_folder();
+    let bin_folder = create_folder();
     for tool in ["bash", "env", "id", "dirname", "grep", "apt-get"] {
         let tool_path = Path::new("/usr/bin").join(tool);
-        symlink(tool_path, bin.path().join(tool)).expect("a link");
+        symlink(tool_path, bin_folder.path().join(tool)).expect("a link");
     }
-    let dpkg_query = bin.path().join("dpkg-query");
-    // This is a new file, not a link: writing through a link would change the machine's own program.
+    let dpkg_query = bin_folder.path().join("dpkg-query");
+    // A new file, not a link: writing through a link would change the machine's own program.
     fs::write(&dpkg_query, "#!/usr/bin/bash\nexit 1\n").expect("the test owns the file");
     fs::set_permissions(&dpkg_query, Permissions::from_mode(0o755))
         .expect("the test owns the file");
@@ -182,7 +191,7 @@ fn a_missing_avrdude_says_what_to_install() {
     } else {
         Command::new("/usr/bin/bash")
     };
-    command.arg(script).env("PATH", bin.path());
+    command.arg(script).env("PATH", bin_folder.path());
     let output = LIMIT.output(&mut command, b"");
     let output = output.expect("setpriv starts (Debian package util-linux)");
     let output_text = String::from_utf8_lossy(&output.stdout);

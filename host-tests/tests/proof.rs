@@ -46,7 +46,7 @@ fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_judged_wrongly() {
             .map(|finding| finding.tally.pair_count)
             .sum();
         assert!(pair_count > 250_000, "only {pair_count} pairs were checked");
-        let certified_count = proof.certified();
+        let certified_count = proof.certified_count();
         assert!(
             certified_count > pair_count / 50,
             "{certified_count} of {pair_count} pairs in cells"
@@ -82,7 +82,7 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
         offset: 1,
     };
     assert_eq!(
-        Proof::of(&robot, robot.firmware(), sample, &|_| {}).wrong(),
+        Proof::of(&robot, robot.firmware(), sample, &|_| {}).wrong_count(),
         0
     );
     let proof = Proof::of(&robot, longer_robot.firmware(), sample, &|_| {});

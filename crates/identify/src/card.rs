@@ -24,7 +24,7 @@ impl Card {
     pub(crate) const PRIOR_ERRORS: [f64; PARAMETER_COUNT] = [2.0, 2.0, 2.0];
 
     /// Converts a movement of the robot to that of the card, in the card's frame at the start.
-    pub(crate) fn card_travel(&self, travel: Travel) -> Travel {
+    pub(crate) fn card_travel(&self, robot_travel: Travel) -> Travel {
         let card_place_of = |body: Place| {
             let [forward, left] = body.to_floor([self.ahead, self.left]);
             let heading = body.heading + self.turn.to_radians();
@@ -35,9 +35,9 @@ impl Card {
             }
         };
         let end = Place {
-            forward: travel.forward,
-            left: travel.left,
-            heading: travel.turn.to_radians(),
+            forward: robot_travel.forward,
+            left: robot_travel.left,
+            heading: robot_travel.turn.to_radians(),
         };
         card_place_of(end).travel_from(card_place_of(Place::START))
     }

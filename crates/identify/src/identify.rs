@@ -1,9 +1,9 @@
 //! The fit of all keys, and the choice of the keys whose value changes.
 //!
-//! First all keys are free. The reported standard errors are those of this fit, since the file influences them only
-//! by the wide priors. Then keys return to the file's value one by one: each time the key that is nearest to its file
-//! value in units of its standard error, as long as that distance is below two. After each return the free keys are
-//! adjusted. So if two keys have the same effect, only one of them changes.
+//! First all keys are free. The reported standard errors are those of this fit, because the file's values enter it only
+//! through wide priors. Then keys return to their file values one at a time. The next key is always the one that is
+//! nearest to its file value, measured in its standard errors. Keys return as long as this distance is less than two.
+//! After each return the free keys are adjusted. So if two keys have the same effect, only one of them changes.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 use crate::card::{self, Card};
 use crate::chi_square::percentile_99;
 use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, PLAY_INDEX, TWIST_INDEX};
-use crate::outcome::{Goodness, Identified, KeyResult, Row, Verdict};
+use crate::outcome::{Goodness, Identified, KeyResult, MovementResult, Verdict};
 use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split};
 use crate::trouble::Trouble;
 use crate::way::MeasuredMovement;
@@ -28,8 +28,8 @@ const MAX_ERROR_SHARE: f64 = 0.5;
 /// Correlation of errors above which two keys are reported as hard to distinguish.
 const MIN_CORRELATION: f64 = 0.8;
 
-/// A function of a count and a job. It runs the job for each index from 0 to the count less 1, one after another or on
-/// all cores, and returns the results in order.
+/// A function that takes a count and a job. It runs the job for each index below the count, one after another or on all
+/// cores, and returns the results in order.
 pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
 /// Identifies the keys of a robot from its measured movements. `run_all` runs the simulations of the gaits: a few
@@ -51,11 +51,13 @@ pub fn identify(
         if !gait.has_movement() {
             return Err(Trouble::MovesNoServo(movement.gait.clone()));
         }
-        let numbers = movement.mean.iter().chain(&movement.error);
-        let is_all_finite = numbers
+        let figures = movement.mean.iter().chain(&movement.error);
+        let are_all_finite = figures
             .chain([&movement.pace])
             .all(|figure| figure.is_finite());
-        if !is_all_finite || movement.pace <= 0.0 || movement.error.iter().any(|error| *error < 0.0)
+        if !are_all_finite
+            || movement.pace <= 0.0
+            || movement.error.iter().any(|error| *error < 0.0)
         {
             return Err(Trouble::InvalidFigure(movement.gait.clone()));
         }
@@ -85,7 +87,7 @@ pub fn identify(
     solve(&movements, file_values, &predict)
 }
 
-/// Finds the keys with which the model `predict` reproduces the measured movements. `start` are the file's values.
+/// Identifies the keys with which the model `predict` reproduces the measured movements.
 pub(crate) fn solve(
     movements: &[MeasuredMovement],
     file_values: Values,
@@ -107,17 +109,17 @@ pub(crate) fn solve(
         true => 1.0,
         false => (full_fit.chi_square / degrees_of_freedom).sqrt().max(1.0),
     };
-    let errors = errors_of(&problem, &full_fit).map(|error| error_factor * error);
+    let errors = standard_errors(&problem, &full_fit).map(|error| error_factor * error);
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
-    let card_only_fit = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
-    let card_only = card_only_fit.ok_or(Trouble::NoFit)?;
+    let card_only_solution = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
+    let card_only_fit = card_only_solution.ok_or(Trouble::NoFit)?;
     let differences = problem
         .differences(&last_fit.unknowns)
         .into_iter()
         .enumerate();
-    let all_differences = differences.flat_map(|(row, parts)| {
+    let all_differences = differences.flat_map(|(movement, parts)| {
         let parts = parts.into_iter().enumerate();
-        parts.map(move |(part, difference)| (row, part, difference))
+        parts.map(move |(part, difference)| (movement, part, difference))
     });
     let largest_difference = all_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
     let new_values = split(&last_fit.unknowns).0;
@@ -129,15 +131,16 @@ pub(crate) fn solve(
         verdict: verdicts[i],
     };
     let predictions = problem
-        .predicted_on_card(&card_only.unknowns)
+        .predicted_on_card(&card_only_fit.unknowns)
         .into_iter()
         .zip(problem.predicted_on_card(&last_fit.unknowns));
-    let rows = movements.iter().zip(predictions);
-    let row_of = |(movement, (predicted_before, predicted_after)): (&MeasuredMovement, _)| Row {
-        measured: movement.clone(),
-        predicted_before,
-        predicted_after,
-    };
+    let measured_and_predicted = movements.iter().zip(predictions);
+    let result_of =
+        |(movement, (predicted_before, predicted_after)): (&MeasuredMovement, _)| MovementResult {
+            measured: movement.clone(),
+            predicted_before,
+            predicted_after,
+        };
     let card_errors: [f64; card::PARAMETER_COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
     Ok(Identified {
         keys: KEYS.iter().enumerate().map(key_result_of).collect(),
@@ -146,7 +149,7 @@ pub(crate) fn solve(
         goodness: Goodness {
             figure_count: problem.figure_count(),
             chi_squares: [
-                card_only.chi_square,
+                card_only_fit.chi_square,
                 last_fit.chi_square,
                 full_fit.chi_square,
             ],
@@ -156,7 +159,7 @@ pub(crate) fn solve(
             error_factor,
             largest_difference: largest_difference.ok_or(Trouble::NothingDetermined)?,
         },
-        rows: rows.map(row_of).collect(),
+        movements: measured_and_predicted.map(result_of).collect(),
     })
 }
 
@@ -166,15 +169,17 @@ struct Fit {
     degrees_of_freedom: f64,
     /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
     chi_square_limit: f64,
+    /// True if the model explains the measurements.
     is_explained: bool,
 }
 
 /// Fits all unknowns, from several starts if the first fit is poor.
 ///
 /// The model is not linear: another foot length changes which feet carry the body, and small play may have no effect
-/// at all. So a fit that leaves a larger sum of squares than a correct model does on average is
-/// repeated from starts in which one of the nonlinear keys is one prior standard deviation above or below the file's
-/// value. A sum below the limit of a correct model is not enough, since a local minimum may reach that limit, too.
+/// at all. So the first fit may end in a local minimum. If it leaves a larger sum of squares than a correct model does
+/// on average, it is repeated from other starts. In each of them, one nonlinear key is one prior standard deviation
+/// above or below the file's value. The limit that 1 % of correct models exceed is not used here, because a local
+/// minimum may also be below this limit.
 fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let start = problem.start_unknowns();
@@ -216,11 +221,11 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
 
 /// Standard errors of a fit of all unknowns.
 ///
-/// The errors from the derivatives hold only for a linear model. The contact model has folds: a foot that is a
+/// The errors from the derivatives are exact only for a linear model. The contact model has folds: a foot that is a
 /// little longer takes over a load, and an even longer foot changes nothing more. So each key is moved by two standard
 /// errors in both directions, and the other unknowns follow according to their correlation with the key. In a linear
-/// model the sum of squares would rise by four. If it rises less, the error is enlarged accordingly.
-fn errors_of(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
+/// model the sum of squares rises by four. If it rises less, the error is enlarged accordingly.
+fn standard_errors(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
     let least_cost = problem.cost(&full_fit.unknowns);
     std::array::from_fn(|i| {
         let error = full_fit.covariance[(i, i)].max(0.0).sqrt();
@@ -239,8 +244,8 @@ fn errors_of(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
     })
 }
 
-/// Degrees of freedom of a fit of all unknowns: the number of figures, less the share of each unknown that the
-/// measurements determine and not its prior.
+/// Degrees of freedom of a fit of all unknowns: the number of figures minus, for each unknown, the share that the
+/// measurements determine instead of the prior.
 fn degrees_of_freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
     let shares = (0..UNKNOWN_COUNT)
         .map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
@@ -266,8 +271,8 @@ fn choose_keys(
         }
     }
     loop {
-        // The linear model comes first, since it needs no run of the gaits.
-        while let Some((key, verdict)) = next_to_hold(&verdicts, &guess, &start, errors) {
+        // Keys are first held in the linear model, because it needs no run of the gaits.
+        while let Some((key, verdict)) = next_key_to_hold(&verdicts, &guess, &start, errors) {
             verdicts[key] = verdict;
             hold(key, &start, &mut guess, &mut covariance);
         }
@@ -279,14 +284,14 @@ fn choose_keys(
         let free_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).filter(is_free).collect();
         let last_fit = problem.fit(&free_unknowns, &guess).ok_or(Trouble::NoFit)?;
         guess = last_fit.unknowns;
-        if next_to_hold(&verdicts, &guess, &start, errors).is_none() {
+        if next_key_to_hold(&verdicts, &guess, &start, errors).is_none() {
             return Ok((last_fit, verdicts));
         }
     }
 }
 
-/// The next key to return to the file's value, and the reason; `None` if all free keys may keep their new values.
-fn next_to_hold(
+/// The next key to return to the file's value, and its verdict; `None` if all free keys may keep their new values.
+fn next_key_to_hold(
     verdicts: &[Verdict; KEY_COUNT],
     unknowns: &[f64; UNKNOWN_COUNT],
     start: &[f64; UNKNOWN_COUNT],
@@ -302,7 +307,7 @@ fn next_to_hold(
     Some((low_key, Verdict::Impossible(unknowns[low_key])))
 }
 
-/// Holds a key at the file's value, and moves the other unknowns according to their correlation with it.
+/// Holds a key at the file's value, and moves the other unknowns according to their correlation with the key.
 fn hold(
     key: usize,
     start: &[f64; UNKNOWN_COUNT],

@@ -1,4 +1,4 @@
-//! Identification of a built robot: the values of robot.toml with which the contact model moves as the robot did.
+//! Identification of a built robot: finds the values of robot.toml with which the contact model moves like the robot.
 //!
 //! Some keys are assumptions until the robot stands on its floor: the play of its legs, the grain of its pads, a
 //! foot that is too long, the mass centre, the mounting of the legs. A film shows how far the robot moves in a
@@ -34,6 +34,6 @@ mod way;
 pub use card::Card;
 pub use identify::{RunAll, identify};
 pub use key::{KEYS, Key};
-pub use outcome::{Goodness, Identified, KeyResult, Row, Verdict};
+pub use outcome::{Goodness, Identified, KeyResult, MovementResult, Verdict};
 pub use trouble::Trouble;
 pub use way::{MeasuredMovement, PARTS};

@@ -9,14 +9,14 @@ use crate::way::MeasuredMovement;
 pub struct Identified {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<KeyResult>,
-    /// The position of the card, then the standard errors of its parameters.
+    /// The place of the card, then the standard errors of this place.
     pub card: [Card; 2],
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
     pub correlated_pairs: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
     pub goodness: Goodness,
     /// The measured movements and the predictions of the model.
-    pub rows: Vec<Row>,
+    pub movements: Vec<MovementResult>,
 }
 
 /// The result for one key.
@@ -26,10 +26,10 @@ pub struct KeyResult {
     pub key: &'static Key,
     /// Value in the file.
     pub file_value: f64,
-    /// Value with which the model fits the measurements best; the file's value unless the verdict is
+    /// Value with which the model fits the measurements best; the file's value if the verdict is not
     /// [`Verdict::Moved`].
     pub new_value: f64,
-    /// Standard error of the value that the measurements give.
+    /// Standard error of the value that the measurements determine.
     pub error: f64,
     /// The decision about the key.
     pub verdict: Verdict,
@@ -44,7 +44,7 @@ pub enum Verdict {
     Unchanged,
     /// The measurements do not determine the key: its standard error stays above half of its prior standard deviation.
     Undetermined,
-    /// The measurements ask for this value, which is below the least possible one; the file's value stays.
+    /// The measurements require this value, which is below the least possible value; the file's value stays.
     Impossible(f64),
 }
 
@@ -56,7 +56,7 @@ pub struct Goodness {
     /// Sum of squares of the differences in standard errors: with the file's values, with the new values, and
     /// with all keys free.
     pub chi_squares: [f64; 3],
-    /// Degrees of freedom: the number of figures, less the number that the fit of all keys uses up.
+    /// Degrees of freedom: the number of figures, minus the number that the fit of all keys uses.
     pub degrees_of_freedom: f64,
     /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
     pub chi_square_limit: f64,
@@ -65,13 +65,14 @@ pub struct Goodness {
     pub is_explained: bool,
     /// Factor by which all errors were widened.
     pub error_factor: f64,
-    /// Row, part and value of the largest difference with the new values, in standard errors.
+    /// Index of the movement, index of the part, and value of the largest difference with the new values, in standard
+    /// errors.
     pub largest_difference: (usize, usize, f64),
 }
 
 /// A measured movement and the predictions of the model.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct MovementResult {
     /// The measured movement. A part has an infinite error and no weight if the model cannot predict it, because two
     /// feet pull against the other two.
     pub measured: MeasuredMovement,

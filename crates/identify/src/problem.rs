@@ -1,9 +1,9 @@
 //! The least-squares problem: differences between measured movements and those of the model, in units of their
 //! standard errors.
 //!
-//! The model takes tens of milliseconds for one movement. So each result is stored, and the derivatives with respect
-//! to the keys are reused near the point at which they were computed. Prior knowledge counts as a measurement: each
-//! key is near the file's value, within its prior standard deviation, and the card is near its nominal place. So a
+//! The model takes tens of milliseconds for one movement. So each result is stored, and derivatives with respect to
+//! the keys are reused for values near those at which they were computed. Prior knowledge counts as a measurement:
+//! each key is near the file's value, within its prior standard deviation, and the card is near its nominal place. So a
 //! key that the movements do not determine keeps the file's value, and its uncertainty enlarges the errors of the
 //! other keys.
 
@@ -48,15 +48,15 @@ pub(crate) struct Problem<'a> {
     pub prior_errors: [f64; UNKNOWN_COUNT],
     predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     /// Results of the model for all values so far.
-    computed: RefCell<Vec<(Values, Vec<Travel>)>>,
-    /// Values at which the derivatives are computed; `None` if the next fit step has to choose this point.
+    cached_results: RefCell<Vec<(Values, Vec<Travel>)>>,
+    /// Values of the keys at which the derivatives are computed; `None` if the next step of a fit has to choose them.
     jacobian_point: RefCell<Option<Values>>,
 }
 
 /// The result of a fit.
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {
-    /// Values of all unknowns; the ones that were not free have their start values.
+    /// Values of all unknowns; those that were not free have their start values.
     pub unknowns: [f64; UNKNOWN_COUNT],
     /// Covariance of the free unknowns, in their order.
     pub covariance: DMatrix<f64>,
@@ -77,7 +77,7 @@ impl<'a> Problem<'a> {
             file_values,
             prior_errors: std::array::from_fn(|_| prior_errors.next().unwrap_or_default()),
             predict,
-            computed: RefCell::default(),
+            cached_results: RefCell::default(),
             jacobian_point: RefCell::default(),
         }
     }
@@ -138,9 +138,9 @@ impl<'a> Problem<'a> {
         rows.map(divided_row_of).collect()
     }
 
-    /// The movements of the robot that the model predicts. A negative play, which no robot has, is extrapolated as
-    /// 2 f(0) - f(-play), so that the fit of a robot without play may err in both directions. Other keys are raised
-    /// to their least values.
+    /// The movements of the robot that the model predicts. No robot has negative play, but a fit may try it: then the
+    /// fit of a robot without play can err in both directions. The movements for negative play are extrapolated as
+    /// 2 f(0) - f(-play). Other keys are raised to their least values.
     fn robot_travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY_INDEX] < 0.0 {
             let travels_with_play = |play: f64| {
@@ -162,11 +162,11 @@ impl<'a> Problem<'a> {
         }
         let values = raise_to_min_values(*values);
         let has_these_values = |(known_values, _): &&(Values, Vec<Travel>)| *known_values == values;
-        if let Some((_, travels)) = self.computed.borrow().iter().find(has_these_values) {
+        if let Some((_, travels)) = self.cached_results.borrow().iter().find(has_these_values) {
             return travels.clone();
         }
         let travels = (self.predict)(&values);
-        let mut computed = self.computed.borrow_mut();
+        let mut computed = self.cached_results.borrow_mut();
         computed.push((values, travels.clone()));
         travels
     }
@@ -175,44 +175,43 @@ impl<'a> Problem<'a> {
     ///
     /// The method is Gauss-Newton; a step that does not reduce the sum of squares is halved. A finer search is useless,
     /// since the model is rough: servos have a dead band and pads stick.
-    pub fn fit(&self, free: &[usize], guess: &[f64; UNKNOWN_COUNT]) -> Option<Solution> {
+    pub fn fit(&self, free_unknowns: &[usize], guess: &[f64; UNKNOWN_COUNT]) -> Option<Solution> {
         let start = self.start_unknowns();
         let mut unknowns = start;
-        for &unknown in free {
+        for &unknown in free_unknowns {
             unknowns[unknown] = guess[unknown];
         }
         let residuals_at = |unknowns: &[f64; UNKNOWN_COUNT]| {
             let differences = self.differences(unknowns).into_flattened().into_iter();
-            let prior_deviations = free
+            let prior_deviations = free_unknowns
                 .iter()
                 .map(|&i| (unknowns[i] - start[i]) / self.prior_errors[i]);
             DVector::from_iterator(
-                3 * self.movements.len() + free.len(),
+                3 * self.movements.len() + free_unknowns.len(),
                 differences.chain(prior_deviations),
             )
         };
         let mut current_residuals = residuals_at(&unknowns);
         let mut covariance = DMatrix::zeros(0, 0);
         for _ in 0..MAX_ITERATIONS {
-            let jacobian = self.jacobian_at(free, &unknowns);
+            let jacobian = self.jacobian_at(free_unknowns, &unknowns);
             let gradient = jacobian.tr_mul(&current_residuals);
             covariance = jacobian.tr_mul(&jacobian).cholesky()?.inverse();
             let step = &covariance * &gradient;
             let promised_gain = step.dot(&gradient);
             if promised_gain < MIN_PROMISED_GAIN {
-                // The standard errors follow from the derivatives, which may differ from the ones at the start of
-                // the fit.
+                // The standard errors follow from the derivatives, so these must be from near the end of the fit.
                 match self.discard_distant_jacobian(split(&unknowns).0, REUSE_STEPS_AT_END) {
                     true => continue,
                     false => break,
                 }
             }
             let shortened_steps = (0..=MAX_HALVINGS).map(|halvings| {
-                let mut next_unknowns = unknowns;
-                for (unknown, step) in free.iter().zip(step.iter()) {
-                    next_unknowns[*unknown] -= step / f64::from(1 << halvings);
+                let mut shortened_unknowns = unknowns;
+                for (unknown, step) in free_unknowns.iter().zip(step.iter()) {
+                    shortened_unknowns[*unknown] -= step / f64::from(1 << halvings);
                 }
-                (next_unknowns, residuals_at(&next_unknowns))
+                (shortened_unknowns, residuals_at(&shortened_unknowns))
             });
             let mut better_steps = shortened_steps.filter(|(_, residuals)| {
                 residuals.norm_squared() < current_residuals.norm_squared()
@@ -249,12 +248,19 @@ impl<'a> Problem<'a> {
     }
 
     /// Derivatives of the residuals with respect to the free unknowns.
-    fn jacobian_at(&self, free: &[usize], unknowns: &[f64; UNKNOWN_COUNT]) -> DMatrix<f64> {
+    fn jacobian_at(
+        &self,
+        free_unknowns: &[usize],
+        unknowns: &[f64; UNKNOWN_COUNT],
+    ) -> DMatrix<f64> {
         let near_values = self.jacobian_point_near(split(unknowns).0);
         let base = std::array::from_fn(|i| near_values.get(i).copied().unwrap_or(unknowns[i]));
         let base_movements = self.predicted_on_card(&base);
-        let mut jacobian = DMatrix::zeros(3 * self.movements.len() + free.len(), free.len());
-        for (column, &unknown) in free.iter().enumerate() {
+        let mut jacobian = DMatrix::zeros(
+            3 * self.movements.len() + free_unknowns.len(),
+            free_unknowns.len(),
+        );
+        for (column, &unknown) in free_unknowns.iter().enumerate() {
             let step = KEYS.get(unknown).map_or(0.1, |key| key.derivative_step);
             let mut moved_unknowns = base;
             moved_unknowns[unknown] += step;

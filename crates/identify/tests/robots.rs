@@ -1,4 +1,4 @@
-//! Identification of deliberately changed keys from the simulated movements, for each robot of `robots/`.
+//! A test that deliberately changed keys are identified from simulated movements, for each robot of `robots/`.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -7,11 +7,11 @@ use fastrand::Rng;
 use lizard_identify::{Identified, KEYS, KeyResult, MeasuredMovement, Verdict, identify};
 use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 
-/// Standard error of a measured mean, mm and deg: that of about eight cycles.
+/// Standard error of a mean of about eight cycles, mm and deg.
 const MEAN_ERROR: f64 = 0.03;
 /// Number of gaits that are filmed.
 const GAIT_COUNT: usize = 8;
-/// Possible change of each key, up or down, in the order of `KEYS`; a robot gets up to three of these changes.
+/// Size of the change of each key, in the order of `KEYS`. A robot gets up to three of these changes, up or down.
 const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
 fn change_key(ground: &mut Ground, key: usize, change: f64) {
@@ -77,10 +77,10 @@ struct Trial {
 }
 
 impl Trial {
-    fn new(file: &Path, seed: u64) -> Self {
+    fn new(path: &Path, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let robot =
-            Robot::parse(&std::fs::read_to_string(file).expect("a robot")).expect("a valid robot");
+            Robot::parse(&std::fs::read_to_string(path).expect("a robot")).expect("a valid robot");
         let mut ground = *robot.ground();
         let mut changes = [0.0; 7];
         for _ in 0..3 {
@@ -96,7 +96,7 @@ impl Trial {
         Self {
             name: format!(
                 "{} {seed}",
-                file.file_stem().expect("a name").to_string_lossy()
+                path.file_stem().expect("a name").to_string_lossy()
             ),
             changes,
             identified: identify(&robot, &movements, &run_sequentially)
@@ -126,16 +126,16 @@ fn changed_keys_are_found_within_two_errors_and_correct_keys_stay() {
         .and_then(|text| text.parse().ok());
     let first_seed = 2 * seed.unwrap_or(1) - 1;
     let trials: Vec<Trial> = thread::scope(|scope| {
-        let robots = files
+        let variants = files
             .iter()
             .flat_map(|file| [(file, first_seed), (file, first_seed + 1)]);
-        let run = |(file, seed): (&PathBuf, u64)| {
+        let start_trial = |(file, seed): (&PathBuf, u64)| {
             let file = file.clone();
             scope.spawn(move || Trial::new(&file, seed))
         };
-        let threads: Vec<_> = robots.map(run).collect();
-        let results = threads.into_iter().map(|thread| thread.join());
-        results.map(|trial| trial.expect("a trial")).collect()
+        let threads: Vec<_> = variants.map(start_trial).collect();
+        let trials = threads.into_iter().map(|thread| thread.join());
+        trials.map(|trial| trial.expect("a trial")).collect()
     });
     let (mut changed_count, mut near_count, mut unchanged_count, mut moved_count) = (0, 0, 0, 0);
     for trial in &trials {

@@ -1,14 +1,14 @@
 //! Computations on the paper *Optimal Kinematic Design of a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*.
 //!
-//! Many of the paper's equations are wrong as printed, and its dimensions do not have the conditioning that it claims.
-//! [`errata`] evaluates every printed equation, and its correction, at random poses against the geometric solution.
-//! [`design`] repeats the dimensional synthesis, and searches for better proportions. [`mobility`] counts the degrees
-//! of freedom of the body and of the legs, and measures them by the rank of the constraints.
+//! Many of the paper's equations are wrong as printed, and its design does not have the conditioning that the paper
+//! claims. [`errata`] evaluates every printed equation and its correction at random poses, and compares them with the
+//! geometric solution. [`design`] repeats the dimensional synthesis, and searches for better proportions. [`mobility`]
+//! counts the degrees of freedom of the body and of the legs, and measures them by the rank of the constraints.
 //!
 //! The crate reads no files, stores nothing and prints nothing. [`errata`] and [`design`] use all cores.
 //!
 //! # When not to use it
-//! To solve poses, use `lizard-kinematics`. This crate only checks this paper's equations, and cannot read others.
+//! To solve poses, use `lizard-kinematics`. This crate only checks the equations of this paper.
 //!
 //! # Units
 //! mm and degrees, in the chassis frame: +x to the right, +y to the head, angles counter-clockwise from +x.

@@ -1,8 +1,8 @@
 //! Degrees of freedom of the body and of the legs, counted and measured.
 //!
-//! Counting (Gruebler) assumes that no two joints impose the same constraint. The rank of the constraints at a pose
-//! does not need this assumption. Here every moving link has three velocities: vx and vy of its point at the origin,
-//! and omega. Every joint gives two rows. The degrees of freedom are the number of columns minus the rank.
+//! Gruebler's count assumes that no two joints impose the same constraint. The rank of the constraint Jacobian at a
+//! pose does not need this assumption. Every moving link has three columns in the Jacobian: vx and vy of its point at
+//! the origin, and omega. Every joint has two rows. The degrees of freedom are the number of columns minus the rank.
 //!
 //! At a type-2 singularity the number of freedoms is the same, but the servos do not control one of them. So the rank
 //! is computed again with the driven cranks locked, which adds a row for each crank. A link that can still move is
@@ -12,8 +12,8 @@ use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
-/// Singular values below this share of the largest singular value count as zero. With this value, a singular pose that
-/// is typed with seven digits is found.
+/// Singular values below this share of the largest singular value count as zero. This share still finds a singular pose
+/// that is typed with seven digits.
 const RANK_TOLERANCE: f64 = 1e-7;
 
 /// Links slower than this share of the fastest link count as standing still.
@@ -29,7 +29,7 @@ struct Mechanism {
     joints: Vec<Joint>,
     /// The numbers of the links that a servo drives.
     driven_links: Vec<usize>,
-    /// Groups of links, each with the message if one of its links moves while the driven links are locked.
+    /// Groups of links, each with the message for the case that one of them moves while the driven links are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 
@@ -39,7 +39,7 @@ struct Joint {
     kind: JointKind,
 }
 
-/// The kind of a joint, with its place in the examined pose.
+/// The kind of a joint, with its position in the examined pose.
 enum JointKind {
     /// A pin at a point, mm.
     Revolute(Vector),
@@ -86,7 +86,7 @@ pub fn measure(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
         .collect()
 }
 
-/// The body with its 13 links: chassis, four cranks with their side arms, four couplers, four slider halves.
+/// The body with its 13 links: chassis, four cranks (with their side arms), four couplers and four slider halves.
 fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
     const CRANK_LINKS: [usize; 4] = [1, 2, 3, 4];
     let tips = solution.crank_tips();
@@ -176,9 +176,9 @@ pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
     count_freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
 }
 
-/// A mechanism's degrees of freedom with unlocked servos, by rank.
+/// Returns a mechanism's degrees of freedom with unlocked servos, by rank.
 fn count_freedoms(mechanism: &Mechanism) -> usize {
-    let free_jacobian = jacobian(mechanism, &[]);
+    let free_jacobian = constraint_jacobian(mechanism, &[]);
     free_jacobian.ncols() - rank_of(&free_jacobian.singular_values())
 }
 
@@ -186,15 +186,19 @@ impl Mobility {
     /// Counts and measures one mechanism.
     fn of(mechanism: &Mechanism) -> Self {
         let joints = mechanism.joints.len();
-        let free_jacobian = jacobian(mechanism, &[]);
+        let free_jacobian = constraint_jacobian(mechanism, &[]);
         let (constraints, velocities) = free_jacobian.shape();
         let rank = rank_of(&free_jacobian.singular_values());
-        let locked_svd = SVD::new(jacobian(mechanism, &mechanism.driven_links), false, true);
-        let values = &locked_svd.singular_values;
-        let zero_limit = RANK_TOLERANCE * values.max();
+        let locked_svd = SVD::new(
+            constraint_jacobian(mechanism, &mechanism.driven_links),
+            false,
+            true,
+        );
+        let singular_values = &locked_svd.singular_values;
+        let zero_limit = RANK_TOLERANCE * singular_values.max();
         let mut loose_parts = Vec::new();
         if let Some(directions) = &locked_svd.v_t {
-            for (value, direction) in values.iter().zip(directions.row_iter()) {
+            for (value, direction) in singular_values.iter().zip(directions.row_iter()) {
                 if *value <= zero_limit {
                     let speeds: Vec<f64> = (0..mechanism.link_count - 1)
                         .map(|link| direction.columns(3 * link, 3).norm())
@@ -219,22 +223,25 @@ impl Mobility {
             velocities,
             rank,
             freedoms: velocities - rank,
-            locked_freedoms: velocities - rank_of(values),
+            locked_freedoms: velocities - rank_of(singular_values),
             loose: loose_parts,
-            conditioning: values.min() / values.max(),
+            conditioning: singular_values.min() / singular_values.max(),
         }
     }
 }
 
 /// The number of singular values that are not zero.
-fn rank_of(values: &DVector<f64>) -> usize {
-    let zero_limit = RANK_TOLERANCE * values.max();
-    values.iter().filter(|value| **value > zero_limit).count()
+fn rank_of(singular_values: &DVector<f64>) -> usize {
+    let zero_limit = RANK_TOLERANCE * singular_values.max();
+    singular_values
+        .iter()
+        .filter(|value| **value > zero_limit)
+        .count()
 }
 
 /// The constraints on the velocities of the moving links: two rows for each joint, and one row for each link that is
 /// locked against turning.
-fn jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
+fn constraint_jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
     let joint_count = mechanism.joints.len();
     let velocity_count = 3 * (mechanism.link_count - 1);
     let mut rows = DMatrix::<f64>::zeros(2 * joint_count + locked_links.len(), velocity_count);

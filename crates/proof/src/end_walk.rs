@@ -1,4 +1,4 @@
-//! All pairs of positions of an end's two servos, decided by the guard and by floating point.
+//! The comparison of the guard with floating point at all pairs of positions of an end's two servos.
 
 use lizard_core::guard::five_bar::EndMargins;
 use lizard_core::numbers::cells::Cells;
@@ -7,10 +7,12 @@ use lizard_kinematics::{AssemblyMode, End, FiveBar, Lanes};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
-use crate::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
-use crate::tally::{STEPS_BAND, Tally, margin_band};
+use crate::rows::{
+    PairSample, columns, for_each_eight, gather_lanes, q15_to_sine, splat, tally_rows,
+};
+use crate::tally::{LENGTH_BAND_STEPS, Tally, margin_band};
 
-/// The comparison of guard and floating point over all pairs of an end.
+/// The comparison of the guard with floating point over all pairs of an end.
 pub struct EndComparison<'a> {
     fixed: lizard_core::guard::five_bar::FiveBar<'a>,
     exact: FiveBar,
@@ -18,18 +20,18 @@ pub struct EndComparison<'a> {
     limits: [f64; 2],
     /// Smallest allowed type-2 and type-1 margins, in the firmware's integers.
     fixed_limits: [i16; 2],
-    /// Smallest allowed margin of a leg, in the firmware's integers.
-    fixed_leg: i16,
+    /// Smallest allowed leg margin, in the firmware's integers.
+    fixed_leg_limit: i16,
     end: End,
     cells: Cells<'a>,
     margin_band: f64,
-    crossing_band: f64,
+    crossing_band_mm: f64,
 }
 
 impl<'a> EndComparison<'a> {
     pub fn new(robot: &Robot, guard: &'a CoreRobot, maps: &'a CellMaps, end: End) -> Self {
         let limits = guard.limits();
-        let [margin_band, crossing_band] = bands(robot, end);
+        let [margin_band, crossing_band_mm] = bands(robot, end);
         let map = match end {
             End::Head => &maps.head,
             End::Tail => &maps.tail,
@@ -39,27 +41,27 @@ impl<'a> EndComparison<'a> {
             exact: robot.lizard().end(end),
             limits: [robot.limits().type2, robot.limits().type1],
             fixed_limits: [limits.type2.0, limits.type1.0],
-            fixed_leg: limits.leg.0,
+            fixed_leg_limit: limits.leg.0,
             end,
             cells: map.cells(),
             margin_band,
-            crossing_band,
+            crossing_band_mm,
         }
     }
 
-    /// Compares the selected pairs in piece `cut` of the rows.
-    pub fn walk(
+    /// Compares the selected pairs in one piece of the rows.
+    pub fn compare_piece(
         &self,
         [left, right]: [&Positions; 2],
         sample: PairSample,
-        cut: usize,
+        piece_index: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
-        tally_rows(left, cut, progress, |row| {
+        tally_rows(left, piece_index, progress, |row| {
             let mut tally = Tally::default();
             let crank_left = splat(left.exact[row]);
             for_each_eight(columns(sample, row, right.fixed.len()), |eight, count| {
-                let crank_right = lanes(&right.exact, eight);
+                let crank_right = gather_lanes(&right.exact, eight);
                 let pose = self
                     .exact
                     .pose_unchecked(AssemblyMode::Ahead, crank_left, crank_right);
@@ -67,14 +69,14 @@ impl<'a> EndComparison<'a> {
                 let Lanes(type2) = pose.type2;
                 let Lanes(type1_left) = pose.type1_left();
                 let Lanes(type1_right) = pose.type1_right();
-                let Lanes(across_mm) = pose.gap.x;
+                let Lanes(gap_across_mm) = pose.gap.x;
                 for lane in 0..count {
                     let column = eight[lane];
                     let truth = EndTruth {
                         is_closed: are_closed[lane],
                         type2: type2[lane],
                         type1: [type1_left[lane], type1_right[lane]],
-                        crank_tip_distance: across_mm[lane],
+                        crank_tip_distance_mm: gap_across_mm[lane],
                     };
                     let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
                     let describe_place = || {
@@ -85,7 +87,7 @@ impl<'a> EndComparison<'a> {
                             right.degrees[column]
                         )
                     };
-                    self.compare(&mut tally, margins, &truth, describe_place);
+                    self.compare_pair(&mut tally, margins, &truth, describe_place);
                     let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
                     // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
                     let is_in_cell = match self.end {
@@ -95,7 +97,7 @@ impl<'a> EndComparison<'a> {
                     if is_in_cell {
                         let legs = [left.fixed[row], right.fixed[column]];
                         let is_accepted = self.accepts(margins)
-                            && legs.iter().all(|leg| leg.sin >= self.fixed_leg);
+                            && legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
                         tally.count_certified(is_accepted, describe_place);
                     }
                 }
@@ -112,7 +114,7 @@ impl<'a> EndComparison<'a> {
     }
 
     #[inline(always)]
-    fn compare(
+    fn compare_pair(
         &self,
         tally: &mut Tally,
         margins: EndMargins,
@@ -139,18 +141,18 @@ impl<'a> EndComparison<'a> {
                 );
             }
         }
-        let (margin_distance, crossing_distance) = truth.distances_from_limits(self.limits);
-        let is_exact_safe = margin_distance >= 0.0 && crossing_distance > 0.0;
+        let (margin_distance, crossing_distance_mm) = truth.distances_from_limits(self.limits);
+        let is_exact_safe = margin_distance >= 0.0 && crossing_distance_mm > 0.0;
         if is_fixed_safe != is_exact_safe {
-            // The smaller distance from a limit, relative to its band, decides.
+            // The limit that is nearer, relative to its band, is the cause of the difference.
             let is_by_crossing =
-                crossing_distance / self.crossing_band < margin_distance / self.margin_band;
-            let (excess, band) = if is_by_crossing {
-                (crossing_distance.abs(), self.crossing_band)
+                crossing_distance_mm / self.crossing_band_mm < margin_distance / self.margin_band;
+            let (distance, band) = if is_by_crossing {
+                (crossing_distance_mm.abs(), self.crossing_band_mm)
             } else {
                 (margin_distance.abs(), self.margin_band)
             };
-            tally.record_difference(is_by_crossing, excess, band, || {
+            tally.record_difference(is_by_crossing, distance, band, || {
                 format!(
                     "{}: the guard says {}, floating point {}: margins {:.5} {:.5} {:.5}, for {:.5} {:.5} {:.5}, crank tips {:+.4} mm apart across",
                     describe_place(),
@@ -162,32 +164,35 @@ impl<'a> EndComparison<'a> {
                     truth.type2,
                     truth.type1[0],
                     truth.type1[1],
-                    truth.crank_tip_distance,
+                    truth.crank_tip_distance_mm,
                 )
             });
         }
     }
 }
 
-/// The exact values of an end at a pair of angles, in floating point.
+/// The values of an end at a pair of positions, in floating point.
 struct EndTruth {
     is_closed: bool,
     type2: f64,
     type1: [f64; 2],
     /// The distance from the left crank tip to the right one across the end, mm.
-    crank_tip_distance: f64,
+    crank_tip_distance_mm: f64,
 }
 
 impl EndTruth {
-    /// The distances from the limits: of the smallest margin, a sine; and of the crank tips from crossing, mm.
-    /// Negative beyond the limit.
+    /// The distance of the smallest margin from its limit, a sine, and that of the crank tips from crossing, mm.
+    /// Both are negative beyond the limit.
     #[inline(always)]
     fn distances_from_limits(&self, [min_type2, min_type1]: [f64; 2]) -> (f64, f64) {
         if !self.is_closed {
-            return (-min_type2, self.crank_tip_distance);
+            return (-min_type2, self.crank_tip_distance_mm);
         }
         let type1 = self.type1[0].min(self.type1[1]) - min_type1;
-        ((self.type2 - min_type2).min(type1), self.crank_tip_distance)
+        (
+            (self.type2 - min_type2).min(type1),
+            self.crank_tip_distance_mm,
+        )
     }
 }
 
@@ -196,7 +201,7 @@ impl EndTruth {
 pub fn bands(robot: &Robot, end: End) -> [f64; 2] {
     let step_mm = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
     let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step_mm);
-    [band, STEPS_BAND * step_mm]
+    [band, LENGTH_BAND_STEPS * step_mm]
 }
 
 /// Converts an end to the core's type.

@@ -8,7 +8,7 @@ use lizard_robot::CoreRobot;
 /// All positions of one servo, in steps of 1/65536 turn over its whole travel.
 pub struct Positions {
     /// Sweep from neutral to the first position, in steps of 1/65536 turn.
-    first: i16,
+    first_sweep: i16,
     /// The angle of each position in the chassis frame, degrees.
     pub degrees: Vec<f64>,
     /// The crank's direction in the frame of its end, Q15.
@@ -24,7 +24,7 @@ impl Positions {
         let calibration = guard.calibration()[servo];
         let end = End::of_servo(servo);
         let mut positions = Self {
-            first: calibration.travel_min.0,
+            first_sweep: calibration.travel_min.0,
             degrees: Vec::new(),
             fixed: Vec::new(),
             exact: Vec::new(),
@@ -44,7 +44,7 @@ impl Positions {
     }
 
     /// The sweep from neutral to the position with this index.
-    pub fn sweep(&self, position: usize) -> Sweep {
-        Sweep((i32::from(self.first) + position as i32) as i16)
+    pub fn sweep(&self, index: usize) -> Sweep {
+        Sweep((i32::from(self.first_sweep) + index as i32) as i16)
     }
 }

@@ -20,34 +20,35 @@ pub struct Proof {
 
 impl Proof {
     /// Compares a share of the pairs of a robot with a guard, normally the robot's own. `progress` is called with the
-    /// number of rows completed since its last call; [`Proof::rows`] returns their total.
+    /// number of rows completed since its last call; [`Proof::row_count`] is their total.
     pub fn of(
         robot: &Robot,
         guard: &CoreRobot,
         sample: PairSample,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
-        let walk = walk::Walk::new(robot, guard, sample);
-        let check_piece = |index| walk.piece(index, progress);
-        Self::from_tallies(robot, guard, (0..walk::PIECES).map(check_piece).collect())
+        let comparison = walk::GuardComparison::new(robot, guard, sample);
+        let tally_of = |index| comparison.compare_piece(index, progress);
+        let tallies = (0..walk::PIECE_COUNT).map(tally_of).collect();
+        Self::from_tallies(robot, guard, tallies)
     }
 
-    /// Makes the proof from the tallies of all pieces, in order.
-    pub fn from_tallies(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Self {
+    /// Makes the proof from the tallies of all pieces, in the order of the pieces.
+    pub fn from_tallies(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Self {
         Self {
-            findings: walk::findings(robot, guard, pieces),
+            findings: walk::findings(robot, guard, tallies),
             hash: guard.hash(),
-            margin_band: walk::widest_band(robot),
+            margin_band: walk::widest_margin_band(robot),
         }
     }
 
-    /// The number of rows that [`Proof::of`] walks.
-    pub fn rows(guard: &CoreRobot) -> u64 {
-        walk::rows(guard)
+    /// The number of rows that [`Proof::of`] compares.
+    pub fn row_count(guard: &CoreRobot) -> u64 {
+        walk::row_count(guard)
     }
 
     /// The number of pairs in cells of the robot's maps, whose poses the firmware does not measure.
-    pub fn certified(&self) -> u64 {
+    pub fn certified_count(&self) -> u64 {
         self.findings
             .iter()
             .map(|finding| finding.tally.certified_count)
@@ -56,7 +57,7 @@ impl Proof {
 
     /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard refuses.
     /// If it is 0, guard and cells are proved correct.
-    pub fn wrong(&self) -> u64 {
+    pub fn wrong_count(&self) -> u64 {
         self.findings
             .iter()
             .map(|finding| finding.tally.wrong_count)

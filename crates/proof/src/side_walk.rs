@@ -1,5 +1,5 @@
-//! Compares the guard's decisions with exact geometry: at the pairs of crank positions of a side,
-//! and at the positions of a leg.
+//! The comparison of the guard with floating point at all pairs of positions of a side's two servos, and at all
+//! positions of a leg.
 
 use lizard_core::guard::trig::Direction;
 use lizard_core::numbers::cells::Cells;
@@ -8,16 +8,19 @@ use lizard_kinematics::{End, Lanes, Side, Slider};
 use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
-use crate::rows::{PairSample, columns, for_each_eight, lanes, q15_to_sine, splat, tally_rows};
-use crate::tally::{MARGIN_BAND, STEPS_BAND, Tally};
+use crate::rows::{
+    PairSample, columns, for_each_eight, gather_lanes, q15_to_sine, splat, tally_rows,
+};
+use crate::tally::{LENGTH_BAND_STEPS, MARGIN_BAND, Tally};
 
-/// Compares the guard with geometry at the pairs of one side.
+/// The comparison of the guard with floating point over all pairs of a side.
 pub struct SideComparison<'a> {
     side: Side,
     cells: Cells<'a>,
     fixed: lizard_core::numbers::slider::Slider,
     exact: Slider,
-    stroke: [f64; 2],
+    /// Smallest and largest allowed slider travel, mm.
+    stroke_limits: [f64; 2],
     steps_per_mm: f64,
 }
 
@@ -32,31 +35,31 @@ impl<'a> SideComparison<'a> {
             cells: map.cells(),
             fixed,
             exact: robot.lizard().side(side),
-            stroke: [robot.limits().stroke_min, robot.limits().stroke_max],
+            stroke_limits: [robot.limits().stroke_min, robot.limits().stroke_max],
             steps_per_mm: f64::from(1u32 << fixed.scale.bits),
         }
     }
 
-    /// Compares the selected pairs in piece `cut` of the rows.
-    pub fn walk(
+    /// Compares the selected pairs in one piece of the rows.
+    pub fn compare_piece(
         &self,
         [front, rear]: [&Positions; 2],
         sample: PairSample,
-        cut: usize,
+        piece_index: usize,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
         let to_side_frame = |direction: Direction| match self.side {
             Side::Left => direction,
             Side::Right => direction.mirrored(),
         };
-        let band_mm = STEPS_BAND / self.steps_per_mm;
-        tally_rows(front, cut, progress, |row| {
+        let band_mm = LENGTH_BAND_STEPS / self.steps_per_mm;
+        tally_rows(front, piece_index, progress, |row| {
             let mut tally = Tally::default();
             let crank = to_side_frame(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));
             for_each_eight(columns(sample, row, rear.fixed.len()), |eight, count| {
                 // Positions are in the frame of their end, arms in the frame of the chassis.
-                let crank_rear = End::Tail.mirror(lanes(&rear.exact, eight));
+                let crank_rear = End::Tail.mirror(gather_lanes(&rear.exact, eight));
                 let pose = self
                     .exact
                     .pose_unchecked(self.side.rear_arm(crank_rear), front_arm);
@@ -67,8 +70,8 @@ impl<'a> SideComparison<'a> {
                     let length_sq = self
                         .fixed
                         .length_sq(&crank, &to_side_frame(rear.fixed[column]));
-                    let length = f64::from(length_sq).sqrt() / self.steps_per_mm;
-                    Tally::raise(&mut tally.max_travel_error, (length - d[lane]).abs());
+                    let length_mm = f64::from(length_sq).sqrt() / self.steps_per_mm;
+                    Tally::raise(&mut tally.max_slider_error, (length_mm - d[lane]).abs());
                     let is_allowed = self.fixed.allows(length_sq);
                     if self.cells.contains(front.sweep(row), rear.sweep(column)) {
                         tally.count_certified(is_allowed, || {
@@ -78,12 +81,12 @@ impl<'a> SideComparison<'a> {
                             )
                         });
                     }
-                    let [min, max] = self.stroke;
-                    let clearance = (s[lane] - min).min(max - s[lane]);
-                    if is_allowed != (clearance >= 0.0) {
-                        tally.record_difference(true, clearance.abs(), band_mm, || {
+                    let [min, max] = self.stroke_limits;
+                    let limit_distance = (s[lane] - min).min(max - s[lane]);
+                    if is_allowed != (limit_distance >= 0.0) {
+                        tally.record_difference(true, limit_distance.abs(), band_mm, || {
                             format!(
-                                "at {:.4} and {:.4} deg the slider is {length:.5} mm long by the guard, {:.5} by floating point",
+                                "at {:.4} and {:.4} deg the slider is {length_mm:.5} mm long by the guard, {:.5} by floating point",
                                 front.degrees[row], rear.degrees[column], d[lane]
                             )
                         });
@@ -95,7 +98,7 @@ impl<'a> SideComparison<'a> {
     }
 }
 
-/// Compares the guard with geometry at all positions of one leg.
+/// Compares the guard with floating point at all positions of one leg.
 pub fn compare_leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> Tally {
     let mut tally = Tally::default();
     let min_margin = guard.limits().leg.0;
@@ -105,9 +108,9 @@ pub fn compare_leg(robot: &Robot, guard: &CoreRobot, positions: &Positions) -> T
             &mut tally.max_leg_error,
             (q15_to_sine(fixed.sin) - exact.y).abs(),
         );
-        let clearance = exact.y - robot.limits().leg;
-        if (fixed.sin >= min_margin) != (clearance >= 0.0) {
-            tally.record_difference(false, clearance.abs(), MARGIN_BAND, || {
+        let limit_distance = exact.y - robot.limits().leg;
+        if (fixed.sin >= min_margin) != (limit_distance >= 0.0) {
+            tally.record_difference(false, limit_distance.abs(), MARGIN_BAND, || {
                 format!("at {:.4} deg", positions.degrees[position])
             });
         }

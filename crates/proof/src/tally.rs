@@ -1,4 +1,4 @@
-//! The tally of errors and disagreements over many pairs of positions.
+//! The tally of errors and differing decisions over many pairs of positions.
 
 use lizard_kinematics::FiveBar;
 use serde::{Deserialize, Serialize};
@@ -8,43 +8,43 @@ use serde::{Deserialize, Serialize};
 pub const MARGIN_BAND: f64 = 0.002;
 
 /// Distance from a limit of a slider's stroke, or from the crossing of the crank tips, within which decisions may
-/// differ, in steps of the mechanism's lengths: 1/256 mm for a robot of the paper's size.
-pub const STEPS_BAND: f64 = 4.0;
+/// differ, in steps of the mechanism's lengths. A step is 1/256 mm for a robot of the paper's size.
+pub const LENGTH_BAND_STEPS: f64 = 4.0;
 
-/// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may differ:
-/// [`MARGIN_BAND`], or if that is larger, the angle by which an error of [`STEPS_BAND`] steps of `step` mm turns the
-/// couplers. That angle is large if the couplers are nearly in line: it grows with the reciprocal of the sine between
-/// them, which is at least `type2`.
-pub fn margin_band(bars: &FiveBar, type2: f64, step: f64) -> f64 {
+/// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may differ. It is
+/// [`MARGIN_BAND`] or, if that is larger, the angle by which an error of [`LENGTH_BAND_STEPS`] steps of `step_mm` turns
+/// the couplers. That angle is large if the couplers are nearly in line: it is proportional to the reciprocal of the
+/// sine of the angle between them, which is at least `min_type2`.
+pub fn margin_band(bars: &FiveBar, min_type2: f64, step_mm: f64) -> f64 {
     let (left, right) = (bars.left_coupler_length, bars.right_coupler_length);
     let max_tip_distance =
         (left + right).min(bars.base + bars.left_crank_length + bars.right_crank_length);
     let angle_per_mm = (max_tip_distance / (left * right)).max(1.0 / left.min(right));
-    MARGIN_BAND.max(STEPS_BAND * step * angle_per_mm / type2)
+    MARGIN_BAND.max(LENGTH_BAND_STEPS * step_mm * angle_per_mm / min_type2)
 }
 
-/// Errors and disagreements of one end, one side or one leg.
+/// The tally of one end, one side or one leg: errors of the guard's values, and decisions that differ.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
-    /// Pairs of positions checked.
+    /// The number of pairs of positions that were compared.
     pub pair_count: u64,
     /// The number of pairs in a cell of the robot's maps, each of which the guard must accept.
     pub certified_count: u64,
     /// Largest error of the type-2 margin, a sine.
     pub max_type2_error: Option<f64>,
-    /// Largest error of a type-1 margin.
+    /// Largest error of a type-1 margin, a sine.
     pub max_type1_error: Option<f64>,
-    /// Largest error of a leg's margin.
+    /// Largest error of a leg's margin, a sine.
     pub max_leg_error: Option<f64>,
-    /// Largest error of a slider's travel, mm.
-    pub max_travel_error: Option<f64>,
-    /// The largest distance from a margin's limit at which the decisions differ.
+    /// Largest error of a slider's length, mm.
+    pub max_slider_error: Option<f64>,
+    /// Largest distance from a margin's limit at which the decisions differ, a sine.
     pub max_margin_difference: Option<f64>,
-    /// The largest distance from a limit of a slider's stroke, or from the crossing of the crank tips, at which the
+    /// Largest distance from a limit of a slider's stroke, or from the crossing of the crank tips, at which the
     /// decisions differ, mm.
     pub max_length_difference: Option<f64>,
-    /// The number of pairs outside the bands that are decided wrong, plus the number of pairs in a cell that the
-    /// guard refuses.
+    /// The number of pairs outside the bands that the guard decides wrongly, plus the number of pairs in a cell that
+    /// the guard refuses.
     pub wrong_count: u64,
     /// A description of the first wrong pair.
     pub example: Option<String>,
@@ -67,7 +67,7 @@ impl Tally {
             (&mut self.max_type2_error, other.max_type2_error),
             (&mut self.max_type1_error, other.max_type1_error),
             (&mut self.max_leg_error, other.max_leg_error),
-            (&mut self.max_travel_error, other.max_travel_error),
+            (&mut self.max_slider_error, other.max_slider_error),
             (&mut self.max_margin_difference, other.max_margin_difference),
             (&mut self.max_length_difference, other.max_length_difference),
         ] {
@@ -80,7 +80,7 @@ impl Tally {
         self
     }
 
-    /// Counts a pair in a cell, as wrong if the guard refuses it.
+    /// Counts a pair in a cell. The pair is wrong if the guard refuses it.
     #[inline(always)]
     pub fn count_certified(&mut self, is_accepted: bool, describe_place: impl FnOnce() -> String) {
         self.certified_count += 1;
@@ -92,7 +92,7 @@ impl Tally {
         }
     }
 
-    /// Records a pair that is decided differently at a distance of `difference` from its limit. It is wrong if
+    /// Records a pair at which the decisions differ, at the distance `difference` from its limit. The pair is wrong if
     /// `difference` exceeds `band`.
     #[cold]
     pub fn record_difference(
@@ -100,17 +100,17 @@ impl Tally {
         is_length: bool,
         difference: f64,
         band: f64,
-        example: impl FnOnce() -> String,
+        describe_pair: impl FnOnce() -> String,
     ) {
-        let widest = if is_length {
+        let max_difference = if is_length {
             &mut self.max_length_difference
         } else {
             &mut self.max_margin_difference
         };
-        Self::raise(widest, difference);
+        Self::raise(max_difference, difference);
         if difference > band {
             self.wrong_count += 1;
-            self.example.get_or_insert_with(example);
+            self.example.get_or_insert_with(describe_pair);
         }
     }
 }

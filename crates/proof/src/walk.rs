@@ -1,5 +1,5 @@
-//! Compares the guard with floating point at the pairs of servo positions of every end and side, and divides that
-//! work into pieces.
+//! The comparison of the guard with floating point at the pairs of servo positions of every end and side, divided
+//! into pieces.
 
 use std::sync::OnceLock;
 
@@ -8,30 +8,31 @@ use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 
 use crate::end_walk::{EndComparison, bands};
 use crate::positions::Positions;
-use crate::rows::{CUTS, PairSample};
+use crate::rows::{PIECES_PER_PART, PairSample};
 use crate::side_walk::{SideComparison, compare_leg};
 use crate::tally::{Finding, MARGIN_BAND, Tally};
 
-/// Number of pieces of the whole check: 64 for each end and each side.
-pub const PIECES: usize = 4 * CUTS;
+/// Number of pieces of the whole comparison: 64 for each end and each side.
+pub const PIECE_COUNT: usize = 4 * PIECES_PER_PART;
 
-/// The check of a robot's guard over pairs of servo positions; holds the values that all pieces share.
-pub struct Walk<'a> {
+/// The comparison of a robot's guard with floating point at pairs of servo positions, with the values that all pieces
+/// share.
+pub struct GuardComparison<'a> {
     robot: &'a Robot,
     guard: &'a CoreRobot,
-    share: PairSample,
+    sample: PairSample,
     maps: CellMaps,
-    /// The positions of each servo, computed when a piece needs them.
+    /// The positions of each servo, computed when the first piece needs them.
     positions: [OnceLock<Positions>; 4],
 }
 
-impl<'a> Walk<'a> {
-    /// Makes a check over a sample of the pairs.
-    pub fn new(robot: &'a Robot, guard: &'a CoreRobot, share: PairSample) -> Self {
+impl<'a> GuardComparison<'a> {
+    /// Makes a comparison at a sample of the pairs.
+    pub fn new(robot: &'a Robot, guard: &'a CoreRobot, sample: PairSample) -> Self {
         Self {
             robot,
             guard,
-            share,
+            sample,
             maps: robot.cell_maps(),
             positions: Default::default(),
         }
@@ -41,28 +42,30 @@ impl<'a> Walk<'a> {
         self.positions[servo].get_or_init(|| Positions::of(self.guard, servo))
     }
 
-    /// Checks the pairs of one piece, by its index, below [`PIECES`].
-    pub fn piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
-        let (part_index, cut) = (index / CUTS, index % CUTS);
+    /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
+    pub fn compare_piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
+        let (part_index, piece_index) = (index / PIECES_PER_PART, index % PIECES_PER_PART);
         let positions_of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
         if let Some(end) = End::ALL.get(part_index) {
-            let walk = EndComparison::new(self.robot, self.guard, &self.maps, *end);
-            walk.walk(positions_of(end.servos()), self.share, cut, progress)
+            let comparison = EndComparison::new(self.robot, self.guard, &self.maps, *end);
+            let positions = positions_of(end.servos());
+            comparison.compare_piece(positions, self.sample, piece_index, progress)
         } else {
             let side = Side::ALL[part_index - End::ALL.len()];
-            let walk = SideComparison::new(self.robot, self.guard, &self.maps, side);
-            walk.walk(positions_of(side.servos()), self.share, cut, progress)
+            let comparison = SideComparison::new(self.robot, self.guard, &self.maps, side);
+            let positions = positions_of(side.servos());
+            comparison.compare_piece(positions, self.sample, piece_index, progress)
         }
     }
 }
 
 /// Makes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
-pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Finding> {
-    let mut pieces = pieces.into_iter();
+pub fn findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Finding> {
+    let mut tallies = tallies.into_iter();
     let mut next_part_tally = || {
-        pieces
+        tallies
             .by_ref()
-            .take(CUTS)
+            .take(PIECES_PER_PART)
             .fold(Tally::default(), Tally::merged)
     };
     let mut findings = Vec::new();
@@ -91,8 +94,8 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, pieces: Vec<Tally>) -> Vec<Fin
 }
 
 /// The distance from a margin's limit, a sine, within which the guard may decide differently from floating point: the
-/// larger of both ends' values, and at least [`MARGIN_BAND`].
-pub fn widest_band(robot: &Robot) -> f64 {
+/// larger value of the two ends, and at least [`MARGIN_BAND`].
+pub fn widest_margin_band(robot: &Robot) -> f64 {
     End::ALL
         .map(|end| bands(robot, end)[0])
         .into_iter()
@@ -100,7 +103,7 @@ pub fn widest_band(robot: &Robot) -> f64 {
 }
 
 /// The number of rows to check: one for each position of the first servo of each end and side.
-pub fn rows(guard: &CoreRobot) -> u64 {
+pub fn row_count(guard: &CoreRobot) -> u64 {
     let count_positions = |servo: usize| {
         let calibration = guard.calibration()[servo];
         (i32::from(calibration.travel_max.0) - i32::from(calibration.travel_min.0) + 1) as u64

@@ -19,9 +19,11 @@ pub struct Comparison {
     /// The gait that was found.
     pub tuned: GaitFigures,
     /// Number of random robots on which both gaits were simulated.
-    pub robots: usize,
+    #[serde(rename = "robots")]
+    pub robot_count: usize,
     /// Number of robots on which the gait that was found is faster than the given gait.
-    pub faster: usize,
+    #[serde(rename = "faster")]
+    pub faster_count: usize,
     /// Table for robot.toml that defines the gait that was found.
     pub fragment: String,
 }
@@ -41,7 +43,7 @@ pub struct GaitFigures {
     pub predicted: f64,
     /// Speed with SG-90 servos and their dead band, simulated frame by frame, mm/s or deg/s.
     pub sg90: f64,
-    /// Speeds on the random robots, mm/s or deg/s: 5 %, 50 % and 95 % of the robots are slower.
+    /// Speeds below which 5 %, 50 % and 95 % of the random robots are, mm/s or deg/s.
     pub speeds: [f64; 3],
 }
 
@@ -52,7 +54,7 @@ impl Comparison {
         let pace_factor = gait.audit().peak_speed.speed / rate;
         let (given, given_speeds) = GaitFigures::of(judge, gait, pace_factor);
         let (tuned, tuned_speeds) = GaitFigures::of(judge, found_gait.gait(), 1.0);
-        let faster = tuned_speeds
+        let faster_count = tuned_speeds
             .iter()
             .zip(&given_speeds)
             .filter(|(tuned, given)| tuned > given)
@@ -62,8 +64,8 @@ impl Comparison {
             rate,
             gait: given,
             tuned,
-            robots: tuned_speeds.len(),
-            faster,
+            robot_count: tuned_speeds.len(),
+            faster_count,
             fragment: found_gait.table().to_owned(),
         }
     }
@@ -71,7 +73,7 @@ impl Comparison {
     /// True if the speed that 95 % of the robots exceed is higher with the gait that was found, and if that gait is
     /// faster on more than half of the robots.
     pub fn is_better(&self) -> bool {
-        self.tuned.speeds[0] > self.gait.speeds[0] && 2 * self.faster > self.robots
+        self.tuned.speeds[0] > self.gait.speeds[0] && 2 * self.faster_count > self.robot_count
     }
 
     /// Gain in the speed that 95 % of the robots exceed, as a share of that speed of the given gait.

@@ -4,8 +4,10 @@ use lizard_robot::servo::LEG_NAMES;
 use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
-/// Smallest movement in a cycle that is not regarded as zero: distance in mm, turn in deg.
-const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
+/// Smallest distance in a cycle that is not regarded as zero.
+const MIN_DISTANCE_MM: f64 = 1.0;
+/// Smallest turn in a cycle that is not regarded as zero.
+const MIN_TURN_DEG: f64 = 0.5;
 
 fn is_left(servo: usize) -> bool {
     LEG_NAMES[servo].starts_with('L')
@@ -23,7 +25,7 @@ pub enum GoalError {
         "the direction of the gait `{0}` is undecided, since two feet pull against two; tune another gait"
     )]
     Undecided(String),
-    /// The gait stands, or the robot is at its start again after each cycle.
+    /// The gait stands, or returns the robot to its start in each cycle.
     #[error("the gait `{0}` goes nowhere")]
     Nowhere(String),
     /// The gait walks along a curve.
@@ -55,11 +57,7 @@ impl Goal {
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
             return Err(GoalError::Undecided(gait_name()));
         };
-        let is_enough = |value: f64, min: f64| value.abs() >= min;
-        match (
-            is_enough(forward, MIN_MOVEMENT.0),
-            is_enough(turn, MIN_MOVEMENT.1),
-        ) {
+        match (forward.abs() >= MIN_DISTANCE_MM, turn.abs() >= MIN_TURN_DEG) {
             (true, false) => Ok(Self::Ahead(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
             (false, false) => Err(GoalError::Nowhere(gait_name())),
@@ -76,12 +74,12 @@ impl Goal {
     }
 
     /// True if a movement has almost no component except the one towards this goal.
-    pub fn is_true_to(self, movement: &Travel) -> bool {
+    pub fn is_direction_of(self, movement: &Travel) -> bool {
         match self {
             Self::Ahead(_) => {
-                movement.turn.abs() < MIN_MOVEMENT.1 && movement.left.abs() < MIN_MOVEMENT.0
+                movement.turn.abs() < MIN_TURN_DEG && movement.left.abs() < MIN_DISTANCE_MM
             }
-            Self::Turn(_) => movement.forward.hypot(movement.left) < MIN_MOVEMENT.0,
+            Self::Turn(_) => movement.forward.hypot(movement.left) < MIN_DISTANCE_MM,
         }
     }
 

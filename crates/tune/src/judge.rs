@@ -10,7 +10,7 @@ use crate::variation::{Variation, quantiles};
 
 /// Bounds of the search for a robot's largest amplitude, deg.
 const AMPLITUDE_BOUNDS: (f64, f64) = (5.0, 80.0);
-/// The servos of the random robots. Their dead band reduces small strides by a larger share than wide strides.
+/// The servos of the random robots. Their dead band reduces small strides by a larger share than large strides.
 const SERVO_MODEL: ServoModel = ServoModel::SG90;
 /// A period at which no servo exceeds its speed limit, s. The gait's servo speed is measured at this period.
 const SLOW_PERIOD_S: f64 = 3.0;
@@ -40,7 +40,7 @@ impl BuiltGait {
             let robot = robot.with_gait(&table).ok()?;
             Some(Self { robot, table })
         };
-        let mut shortest: Option<Self> = None;
+        let mut shortest_gait: Option<Self> = None;
         let mut built = build(SLOW_PERIOD_S)?;
         for _ in 0..PERIOD_ITERATIONS {
             let period = round_period(built.gait().period() * built.peak_rate() / max_rate);
@@ -49,16 +49,16 @@ impl BuiltGait {
             }
             built = build(period)?;
             let is_shorter = |shortest: &Self| period < shortest.gait().period();
-            if built.peak_rate() <= max_rate && shortest.as_ref().is_none_or(is_shorter) {
-                shortest = Some(built.clone());
+            if built.peak_rate() <= max_rate && shortest_gait.as_ref().is_none_or(is_shorter) {
+                shortest_gait = Some(built.clone());
             }
         }
         // The peak speed depends on the phases at which frames are sent, so a slightly shorter period may also keep
         // the servos within the limit.
-        let shorter_gait = build(shortest.as_ref()?.gait().period() - 0.01);
+        let shorter_gait = build(shortest_gait.as_ref()?.gait().period() - 0.01);
         shorter_gait
-            .filter(|shorter_gait| shorter_gait.peak_rate() <= max_rate)
-            .or(shortest)
+            .filter(|gait| gait.peak_rate() <= max_rate)
+            .or(shortest_gait)
     }
 
     /// Finds the largest amplitude, deg, at which a wave gait with the first start parameters of the search is within
@@ -125,7 +125,7 @@ impl Judge {
     /// Draws `robot_count` random variations of this robot on this ground, from consecutive seeds, the first of which
     /// is `seed`.
     pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robot_count: usize, seed: u64) -> Self {
-        let variation_of = |n: u64| Variation::of(ground, seed.wrapping_add(n));
+        let variation_of = |index: u64| Variation::of(ground, seed.wrapping_add(index));
         Self {
             robot: robot.clone(),
             ground: *ground,
@@ -163,11 +163,11 @@ impl Judge {
     }
 
     /// Computes the speed that the gait exceeds on 95 % of the random robots. `None` if the gait's movement on the
-    /// robot itself has another component than the goal's.
+    /// robot itself has a component in another direction than the goal's.
     pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
         // A simulation by frames would miss the end of a cycle whose period is not a whole number of frames, and so
         // show a sideways movement. So the direction is checked in fine steps.
-        if !self.goal.is_true_to(&self.simulate_ideal_cycle(gait)) {
+        if !self.goal.is_direction_of(&self.simulate_ideal_cycle(gait)) {
             return None;
         }
         let [score] = quantiles(self.speeds(gait, gait.period()), [SLOWEST_SHARE]);
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn the_legs_of_the_paper_swing_as_wide_as_their_margin_allows() {
+    fn the_legs_of_the_papers_robot_swing_as_wide_as_their_margin_allows() {
         // sin(41.41 deg - amplitude) = 0.3.
         let max_amplitude = BuiltGait::find_max_amplitude(&paper_robot(), Goal::Ahead(1.0), 262.0);
         assert!(

@@ -112,23 +112,23 @@ impl Tuning {
     }
 
     /// Scores a gait by the speed that it exceeds on 95 % of the random robots, mm/s or deg/s. `None` if the gait
-    /// breaks a limit of the robot, or if its movement has another component than the goal's. The call takes a few
-    /// hundredths to a few tenths of a second.
+    /// breaks a limit of the robot, or if its movement has a component in another direction than the goal's. The call
+    /// takes a few hundredths to a few tenths of a second.
     pub fn score(&self, kind: GaitKind, parameters: &[f64]) -> Option<f64> {
         self.judge.score(self.build(kind, parameters)?.gait())
     }
 
     /// Builds the gait with the best score among those whose movement does not depend on unmeasurable differences
     /// between the pads. `None` if there is no such gait.
-    pub fn best(&self, mut scored: Vec<ScoredParameters>) -> Option<BuiltGait> {
-        scored.sort_by(|a, b| b.score.total_cmp(&a.score));
-        scored
+    pub fn build_best(&self, mut candidates: Vec<ScoredParameters>) -> Option<BuiltGait> {
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        candidates
             .iter()
             .filter_map(|candidate| self.build(candidate.kind, &candidate.parameters))
             .find(|built| built.gait().predict(&self.ground).is_decided())
     }
 
-    /// Compares the gait that was found with the given gait, on `robots` random robots that the search has not used.
+    /// Compares the gait that was found with the given gait, on random robots that the search has not used.
     pub fn compare(&self, found_gait: &BuiltGait, robot_count: usize) -> Comparison {
         let seed = self.seed.wrapping_add(COMPARISON_SEED_OFFSET);
         let judge = Judge::new(&self.robot, &self.ground, self.goal(), robot_count, seed);

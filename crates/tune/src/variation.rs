@@ -16,8 +16,8 @@ const MAX_CENTRE_SHIFT_MM: f64 = 8.0;
 const MAX_MOUNT_SHIFT_DEG: f64 = 4.0;
 const MAX_HIP_SHIFT_MM: f64 = 2.0;
 const SPRING_FACTORS: (f64, f64) = (0.8, 1.2);
-/// Range of the factor on the stiffness of the feet's leaves. Stiffness grows with the cube of the thickness, which a
-/// print keeps within a fifteenth.
+/// Range of the factor on the stiffness of the feet's leaves. Stiffness grows with the cube of the thickness, and the
+/// thickness of a print is within one fifteenth of the intended one.
 const LEAF_FACTORS: (f64, f64) = (0.8, 1.25);
 /// Largest random play that is added to the play of the legs, deg.
 const MAX_ADDED_PLAY_DEG: f64 = 1.0;
@@ -93,7 +93,7 @@ impl Variation {
         }
     }
 
-    /// Adds random play to the legs. The simulation then takes longer.
+    /// Adds random play to the legs, with which a simulation takes longer.
     #[must_use]
     pub fn with_play(mut self, seed: u64) -> Self {
         // A separate random sequence for the play leaves all other values unchanged.
@@ -192,8 +192,8 @@ mod tests {
         let quantiles_of = |component: fn(&Travel) -> f64| {
             quantiles(movements.iter().map(component).collect(), [0.05, 0.5, 0.95])
         };
-        let [low, middle, high] = quantiles_of(|movement| movement.forward);
-        assert!(25.0 < low && low < middle && middle < high && high < 40.0);
+        let [low, median, high] = quantiles_of(|movement| movement.forward);
+        assert!(25.0 < low && low < median && median < high && high < 40.0);
         let turn = quantiles_of(|movement| movement.turn);
         assert!(turn[0] < 0.0 && turn[2] > 0.0, "{turn:?}");
     }
@@ -201,19 +201,19 @@ mod tests {
     #[test]
     fn uneven_feet_slow_a_walk_only_if_they_are_stiff() {
         let text = include_str!("../../../robots/paper.toml");
-        let low_forward = |feet: &str| {
+        let slow_forward = |feet: &str| {
             let robot = Robot::parse(&format!("{text}\n{feet}")).expect("right");
             let walk = robot.gait("walk").expect("walk");
             let movements = (0..60).map(|seed| {
                 Variation::of(robot.ground(), seed).simulate_cycle(&robot, walk, ServoModel::SG90)
             });
-            let [min] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
-            min
+            let [slowest] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
+            slowest
         };
-        let level_forward = low_forward("[feet]\nlevel = 0.0");
+        let level_forward = slow_forward("[feet]\nlevel = 0.0");
         assert!(
-            low_forward("") > 0.97 * level_forward
-                && low_forward("[feet]\nstiffness = 3.3") < 0.65 * level_forward
+            slow_forward("") > 0.97 * level_forward
+                && slow_forward("[feet]\nstiffness = 3.3") < 0.65 * level_forward
         );
     }
 
@@ -248,10 +248,11 @@ mod tests {
                 for model in [ServoModel::Ideal, ServoModel::SG90] {
                     let movement =
                         Variation::none(robot.ground()).simulate_cycle(&robot, gait, model);
-                    let twin = Twin::new(&robot, model).simulate_cycle(gait).travel();
-                    let error = (movement.forward - twin.forward).hypot(movement.turn - twin.turn);
+                    let twin_movement = Twin::new(&robot, model).simulate_cycle(gait).travel();
+                    let error = (movement.forward - twin_movement.forward)
+                        .hypot(movement.turn - twin_movement.turn);
                     // The twin reads the firmware's tables of 64 samples; the variation computes the gait itself.
-                    assert!(error < 0.4, "{name} {movement:?} {twin:?}");
+                    assert!(error < 0.4, "{name} {movement:?} {twin_movement:?}");
                 }
             }
         }

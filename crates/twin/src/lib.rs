@@ -6,9 +6,9 @@
 //! nothing, so a program, a test and a web page can use it.
 //!
 //! # When not to use it
-//! The model is planar: feet do not lift or tilt, and links do not bend. Where this
-//! matters, `lizard model` writes the robot for a physics engine. For the movement of a gait
-//! without pulses and servos, `lizard_robot::CheckedGait::predict` is enough.
+//! The model is planar: feet do not lift or tilt, and links do not bend. Where this matters, `lizard model` writes the
+//! robot for a physics engine. For the movement of a gait without pulses and servos,
+//! `lizard_robot::CheckedGait::predict` is enough.
 //!
 //! # Units
 //! mm, degrees, seconds and microseconds, as their names say; a heading is in radians. Servo order A1, A2, A3, A4

@@ -9,7 +9,7 @@ use crate::FRAME_S;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
-    reason = "a program has a few of them, and copies them"
+    reason = "a program has only a few models, and copies them"
 )]
 pub enum ServoModel {
     /// Servos that follow their pulses at once and exactly.
@@ -76,9 +76,13 @@ mod tests {
 
     #[test]
     fn a_servo_does_not_turn_inside_its_dead_band() {
-        let sweep_after_frame = |from, target| SG90.sweep_after_frame(from, target, -10.0);
+        let sweep_after_frame = |start, target| SG90.sweep_after_frame(start, target, -10.0);
         assert_eq!(sweep_after_frame(3.0, 3.5), 3.0);
-        assert_eq!(sweep_after_frame(3.0, 4.0), 3.5, "it stops at the edge");
+        assert_eq!(
+            sweep_after_frame(3.0, 4.0),
+            3.5,
+            "the edge of the dead band"
+        );
         assert_eq!(sweep_after_frame(3.5, 3.0), 3.5);
         assert_eq!(sweep_after_frame(3.5, 2.0), 2.5);
     }

@@ -22,13 +22,13 @@ pub struct Shape {
 impl Shape {
     /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from neutral (deg, foot
     /// forward positive), all in servo order; `None` if the loop of a five-bar or slider does not close.
-    pub fn of(robot: &Robot, angles: [f64; 4], legs: [f64; 4]) -> Option<Self> {
+    pub fn of(robot: &Robot, angles: [f64; 4], leg_sweeps: [f64; 4]) -> Option<Self> {
         let solution = robot.lizard().solve(&angles.into()).ok()?;
-        Some(Self::at_solution(robot, &solution, legs))
+        Some(Self::at_solution(robot, &solution, leg_sweeps))
     }
 
     /// Computes the joints of a solved pose, with legs at these sweeps from neutral (deg, foot forward positive).
-    pub fn at_solution(robot: &Robot, solution: &Solution, legs: [f64; 4]) -> Self {
+    pub fn at_solution(robot: &Robot, solution: &Solution, leg_sweeps: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
         let crank_tips = solution.crank_tips();
         let angles: [f64; 4] = solution.pose.into();
@@ -45,7 +45,7 @@ impl Shape {
             arm_tips,
             ends: End::ALL.map(|end| solution.point(end)),
             legs: std::array::from_fn(|i| {
-                let leg_angle = robot.servos()[i].neutral + FORWARD_TURN_SIGN[i] * legs[i];
+                let leg_angle = robot.servos()[i].neutral + FORWARD_TURN_SIGN[i] * leg_sweeps[i];
                 robot.legs()[i].place_at(angles[i], leg_angle)
             }),
         }
@@ -60,8 +60,8 @@ mod tests {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
     }
 
-    fn neutral_shape(robot: &Robot, legs: [f64; 4]) -> Shape {
-        Shape::of(robot, robot.neutral_pose().into(), legs).expect("neutral closes")
+    fn neutral_shape(robot: &Robot, leg_sweeps: [f64; 4]) -> Shape {
+        Shape::of(robot, robot.neutral_pose().into(), leg_sweeps).expect("neutral closes")
     }
 
     #[test]
@@ -86,13 +86,13 @@ mod tests {
         let strut_length_of =
             |leg: LegPlace| (leg.strut_anchors[1] - leg.strut_anchors[0]).length();
         let [rigid_shape, lagging_shape] =
-            [[0.0; 4], [6.0; 4]].map(|legs| neutral_shape(&robot, legs));
+            [[0.0; 4], [6.0; 4]].map(|leg_sweeps| neutral_shape(&robot, leg_sweeps));
         for i in 0..4 {
             let (rigid_leg, lagging_leg) = (rigid_shape.legs[i], lagging_shape.legs[i]);
             assert_eq!(rigid_leg.pivots, lagging_leg.pivots);
             assert_eq!(
                 rigid_leg.strut_anchors[0], lagging_leg.strut_anchors[0],
-                "the servo stands"
+                "the servo does not move"
             );
             assert!((strut_length_of(rigid_leg) - robot.legs()[i].strut_length).abs() < 1e-9);
             assert!(

@@ -7,7 +7,7 @@ fn paper_robot() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
 }
 
-/// Returns the pulse widths of a gait at a phase, from the firmware's table, us.
+/// Returns the pulse widths of a gait at a phase, us, from the firmware's table.
 fn pulse_widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
@@ -110,8 +110,8 @@ fn three_feet_do_not_slip_while_one_swings() {
         let state = twin.push(pulse_widths(&robot, crawl, phase));
         // In the middle of the second fifth of the cycle, only the left hind leg swings.
         if (0.24..0.36).contains(&seconds) {
-            let is_still = state.slips.map(|mm| mm < 0.01);
-            assert_eq!(is_still, [true, true, true, false], "at {seconds}");
+            let are_still = state.slips.map(|mm| mm < 0.01);
+            assert_eq!(are_still, [true, true, true, false], "at {seconds}");
         }
     }
 }

@@ -8,7 +8,7 @@ use simulated_uno::{CYCLES_PER_MS, Edge, FREQUENCY, Fidelity, Pin, State, Uno};
 /// The pins of the eight servos in the library's examples.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
-/// The text that a test sends again and again without gaps.
+/// The text that a test sends repeatedly, without gaps.
 const FLOOD: &[u8] = b"The quick brown fox jumps over the lazy dog. ";
 
 fn load_elf(path: &str) -> Uno {
@@ -30,7 +30,7 @@ fn edges_since_first_edge(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     edges.iter().map(relative_edge_of).collect()
 }
 
-/// Returns the widths of each pin's pulses in 10 s, cycles, while the sketch echoes a gapless stream of bytes.
+/// Records each pin's pulse widths, in cycles, for 10 s while the sketch echoes bytes that arrive without gaps.
 fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     uno.run_ms(100);
     uno.take_edges();
@@ -49,7 +49,7 @@ fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     pins.iter().map(widths_of).collect()
 }
 
-/// Returns the difference between the longest and the shortest width, cycles.
+/// Returns the difference between the longest and the shortest width.
 fn jitter(widths: &[u64]) -> u64 {
     let [min, max] = [widths.iter().min(), widths.iter().max()];
     max.expect("a pulse") - min.expect("a pulse")
@@ -82,12 +82,12 @@ fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
 fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     let mut uno = load_sketch("BesideSerial");
     // 90 degrees in a range from 544 to 2400 us.
-    let width = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
+    let expected_cycles = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
     for widths in record_widths_in_flood(&mut uno, &PINS) {
         assert!(widths.len() > 440, "{} pulses", widths.len());
         assert!(
-            widths.iter().all(|actual| *actual == width),
-            "not {width}: {widths:?}"
+            widths.iter().all(|actual| *actual == expected_cycles),
+            "not {expected_cycles}: {widths:?}"
         );
     }
     assert_eq!(uno.overruns(), 0);
@@ -143,7 +143,7 @@ fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
     let mut uno = load_sketch("Late");
     uno.run_ms(10_000);
     let pulses = uno.pulses(Pin::d(9));
-    // Interrupts are enabled for half of the time.
+    // The sketch disables interrupts for half of the time, so many of the 500 pulses are late.
     assert!(
         (100..400).contains(&pulses.len()),
         "{} pulses",
@@ -160,17 +160,17 @@ fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
 fn every_change_of_a_width_appears_whole_and_no_pulse_is_cut() {
     let mut uno = load_sketch("Restless");
     let widths = record_widths_in_flood(&mut uno, &[9, 14]);
-    let [written_widths, attached_widths] = &widths[..] else {
+    let [rewritten_widths, attached_widths] = &widths[..] else {
         unreachable!()
     };
     for width in [0x5dff, 0x5e00] {
-        let pulse_count = written_widths
+        let pulse_count = rewritten_widths
             .iter()
             .filter(|actual| **actual == width)
             .count();
-        assert!(pulse_count > 20, "{width} {pulse_count} times");
+        assert!(pulse_count > 20, "{pulse_count} pulses of {width} cycles");
     }
-    let torn_width = written_widths
+    let torn_width = rewritten_widths
         .iter()
         .find(|width| ![0x5dff, 0x5e00].contains(*width));
     assert_eq!(torn_width, None);
@@ -186,12 +186,15 @@ fn every_change_of_a_width_appears_whole_and_no_pulse_is_cut() {
 fn angles_and_widths_equal_those_of_the_servo_library() {
     let mut uno = load_sketch("Ask");
     assert!(uno.run_until_line(100 * CYCLES_PER_MS));
-    let numbers = uno.take_transmitted();
-    let numbers: Vec<u8> = numbers.iter().map(|byte| byte.byte).collect();
+    let transmitted = uno.take_transmitted();
+    let printed_bytes: Vec<u8> = transmitted.iter().map(|byte| byte.byte).collect();
     // For each of eight servos, the sketch prints the servo's index plus `attached()`, which is 1. For a ninth servo
     // and for pin 20 it prints 255.
-    assert_eq!(String::from_utf8_lossy(&numbers), "12345678255255\r\n");
-    for (value, angle, us) in [
+    assert_eq!(
+        String::from_utf8_lossy(&printed_bytes),
+        "12345678255255\r\n"
+    );
+    for (written_value, angle, width_us) in [
         (0, 0, 1000),
         (1, 1, 1005),
         (90, 90, 1500),
@@ -204,9 +207,9 @@ fn angles_and_widths_equal_those_of_the_servo_library() {
         (-20, 0, 1000),
     ] {
         assert_eq!(
-            uno.say(&value.to_string()),
-            Some(format!("{angle} {us}")),
-            "{value}"
+            uno.say(&written_value.to_string()),
+            Some(format!("{angle} {width_us}")),
+            "{written_value}"
         );
         uno.run_ms(50);
         uno.take_edges();
@@ -218,10 +221,10 @@ fn angles_and_widths_equal_those_of_the_servo_library() {
             .collect();
         assert!(!widths.is_empty());
         assert!(
-            widths.iter().all(|width| *width == us * 16),
-            "{value}: {widths:?}"
+            widths.iter().all(|width| *width == width_us * 16),
+            "{written_value}: {widths:?}"
         );
-        // All other servos are detached now.
+        // All other servos are detached.
         assert!(uno.edges().iter().all(|edge| edge.pin == Pin::d(2)));
     }
 }

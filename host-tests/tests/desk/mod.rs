@@ -1,5 +1,5 @@
-//! New board at a serial port of this machine, for tests of programs that write firmware to boards. The board is a UNO,
-//! simulated in real time at a pseudo terminal, with the boot loader of a stock UNO or of an old Nano in its flash.
+//! A new board at a serial port of this machine, for tests of programs that write firmware to boards. The board is a
+//! UNO, simulated in real time at a pseudo terminal. Its flash contains the boot loader of a stock UNO or an old Nano.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
 
 use crate::shell::Shell;
 
-/// Address of the first byte of a UNO's boot loader. The firmware ends before this address.
+/// Address of the first byte of a UNO's boot loader. The firmware must end before this address.
 pub const BOOT_LOADER_START: usize = 0x7e00;
 
 /// Loads the boot loader of a stock UNO.
@@ -90,7 +90,7 @@ impl Desk {
         screen
     }
 
-    /// Returns the addresses below the boot loader at which the flash differs from a program.
+    /// Returns the addresses below the boot loader where the flash differs from a program.
     pub fn differences(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
         (0..BOOT_LOADER_START)
@@ -98,7 +98,7 @@ impl Desk {
             .collect()
     }
 
-    /// Checks that the flash contains this program and an unchanged boot loader.
+    /// Asserts that the flash contains this program and the unchanged boot loader of a stock UNO.
     pub fn assert_written(&self, program: &[u8]) {
         let wrong_addresses = self.differences(program);
         assert!(

@@ -8,7 +8,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host::sim::analysis::servo_frames_of;
 use lizard_host_tests::robot;
 use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
-use lizard_proof::{STEPS_BAND, margin_band};
+use lizard_proof::{LENGTH_BAND_STEPS, margin_band};
 use simulated_uno::Fidelity;
 
 use crate::{FRAMES_PER_SECOND, Status, boot_standing, for_each_in_parallel, neutral_widths};
@@ -16,7 +16,7 @@ use crate::{FRAMES_PER_SECOND, Status, boot_standing, for_each_in_parallel, neut
 /// Returns the largest error of the guard's slider position against floating point, mm.
 fn max_stroke_error() -> f64 {
     let scales = Side::ALL.map(|side| robot().firmware().slider(side).scale.bits);
-    STEPS_BAND / f64::from(1 << scales[0].min(scales[1]))
+    LENGTH_BAND_STEPS / f64::from(1 << scales[0].min(scales[1]))
 }
 
 /// Returns the largest error of a margin that the guard computes, if the type-2 margins are at least `type2`.

@@ -2,11 +2,9 @@
 
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{NamedRobot, robots};
+use lizard_robot::STEPS_PER_DEGREE;
 
 use crate::truth::to_degrees;
-
-/// Steps of the core's angles in a degree.
-const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 
 #[test]
 fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
@@ -17,13 +15,13 @@ fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
             robot.servos().map(|servo| servo.pin),
             "{name}"
         );
-        for (n, servo) in robot.servos().iter().enumerate() {
-            let calibration = firmware.calibration()[n];
-            let neutral = to_degrees(firmware.neutral_angles()[n]);
+        for (index, servo) in robot.servos().iter().enumerate() {
+            let calibration = firmware.calibration()[index];
+            let neutral_deg = to_degrees(firmware.neutral_angles()[index]);
             assert!(
-                (neutral - servo.neutral % 360.0).abs() <= 0.5 / STEPS_PER_DEGREE,
+                (neutral_deg - servo.neutral % 360.0).abs() <= 0.5 / STEPS_PER_DEGREE,
                 "{name}: A{}",
-                n + 1
+                index + 1
             );
             let mut pulse_count = 0;
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
@@ -33,19 +31,19 @@ fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
                 if !(0.0..65536.0).contains(&exact_cycles) {
                     continue;
                 }
-                let error = f64::from(calibration.width(Sweep(sweep)).0) - exact_cycles;
+                let error_cycles = f64::from(calibration.width(Sweep(sweep)).0) - exact_cycles;
                 assert!(
-                    error.abs() <= 2.0,
-                    "{name}: A{} is {error} cycles off",
-                    n + 1
+                    error_cycles.abs() <= 2.0,
+                    "{name}: A{} is {error_cycles} cycles off",
+                    index + 1
                 );
                 pulse_count += 1;
             }
-            // More than half of a turn has pulses.
+            // More than half of all sweeps have a pulse width.
             assert!(
                 pulse_count > 65_536 / 17 / 2,
                 "{name}: A{}: {pulse_count} pulses",
-                n + 1
+                index + 1
             );
         }
     }
@@ -54,23 +52,23 @@ fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
 #[test]
 fn each_servos_travel_ends_at_the_last_step_within_its_range_of_pulses() {
     for NamedRobot { name, robot } in robots() {
-        for (n, servo) in robot.servos().iter().enumerate() {
-            let calibration = robot.firmware().calibration()[n];
+        for (index, servo) in robot.servos().iter().enumerate() {
+            let calibration = robot.firmware().calibration()[index];
             let pulse_us = |sweep: i32| {
                 servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE
             };
             let is_in_range = |sweep: i32| {
-                let us = pulse_us(sweep);
-                servo.min_us - 1e-6 <= us && us <= servo.max_us + 1e-6
+                let width_us = pulse_us(sweep);
+                servo.min_us - 1e-6 <= width_us && width_us <= servo.max_us + 1e-6
             };
             for (end, outward_step) in [(calibration.travel_min, -1), (calibration.travel_max, 1)] {
                 let end = i32::from(end.0);
-                assert!(is_in_range(end), "{name}: A{} at {end}", n + 1);
+                assert!(is_in_range(end), "{name}: A{} at {end}", index + 1);
                 let next_sweep = end + outward_step;
                 assert!(
                     !is_in_range(next_sweep) || next_sweep.abs() > 32_767,
                     "{name}: A{} at {next_sweep}",
-                    n + 1
+                    index + 1
                 );
             }
             assert!(
@@ -86,7 +84,7 @@ fn each_servos_travel_ends_at_the_last_step_within_its_range_of_pulses() {
                 assert!(
                     !calibration.reaches(Sweep(sweep)),
                     "{name}: A{} at {sweep}",
-                    n + 1
+                    index + 1
                 );
             }
         }
@@ -96,10 +94,10 @@ fn each_servos_travel_ends_at_the_last_step_within_its_range_of_pulses() {
 #[test]
 fn a_move_is_as_fast_as_the_file_allows_and_no_faster() {
     for NamedRobot { name, robot } in robots() {
-        let speed = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS_PER_DEGREE;
+        let max_speed = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS_PER_DEGREE;
         let limit = robot.speed_limits().slew;
         assert!(
-            speed <= limit + 1e-6 && speed > limit - 50.0 / STEPS_PER_DEGREE,
+            max_speed <= limit + 1e-6 && max_speed > limit - 50.0 / STEPS_PER_DEGREE,
             "{name}"
         );
     }

@@ -1,4 +1,4 @@
-//! Robot in the core that the tests command through its console. Every frame that the robot sends is checked.
+//! A robot that runs the core, commanded by the tests through its console. Every frame that the robot sends is checked.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -14,13 +14,13 @@ use lizard_robot::{CheckedGait, Robot};
 
 use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
-/// Frames until all servos are awake.
+/// Number of frames after which all servos are awake.
 pub const WAKING_FRAMES: u32 = 20;
 
 /// The speed of one angle step per frame, deg/s.
 pub const STEP_SPEED_DEG_PER_S: f64 = 50.0 * 360.0 / 65536.0;
 
-/// Frames in which a motion accelerates to its pace, or brakes.
+/// Number of frames in which a motion accelerates to its pace, or brakes.
 const ACCELERATION_FRAMES: f64 = 7.0;
 
 /// Maximum rounding error of a change of speed, angle steps per frame.
@@ -64,29 +64,34 @@ fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
             .map(|sweep| f64::from(sweep.0))
     };
     let frame_advance = gait.increment.unsigned_abs();
-    let (mut speed, mut change) = (0.0f64, 0.0f64);
+    let (mut max_speed, mut max_change) = (0.0f64, 0.0f64);
     for phase in (0..CYCLE).step_by(CYCLE as usize / 4096) {
         let [first, second, third] =
             [phase, phase + frame_advance, phase + 2 * frame_advance].map(sweeps_at);
         for servo in 0..4 {
-            speed = speed.max((second[servo] - first[servo]).abs());
-            change = change.max((third[servo] - 2.0 * second[servo] + first[servo]).abs());
+            max_speed = max_speed.max((second[servo] - first[servo]).abs());
+            max_change = max_change.max((third[servo] - 2.0 * second[servo] + first[servo]).abs());
         }
     }
-    (speed * STEP_SPEED_DEG_PER_S, change * STEP_SPEED_DEG_PER_S)
+    (
+        max_speed * STEP_SPEED_DEG_PER_S,
+        max_change * STEP_SPEED_DEG_PER_S,
+    )
 }
 
-/// Returns an upper bound of the frames that any command takes: for waking the servos, braking, the longest move at the
-/// slew limit, and acceleration.
+/// Returns an upper bound for the number of frames that a command takes: for waking the servos, braking, the longest
+/// move at the slew limit, and acceleration.
 pub fn settling_frames(robot: &Robot) -> u32 {
-    let travels = robot.firmware().calibration();
-    let ranges = travels.map(|servo| f64::from(servo.travel_max.0) - f64::from(servo.travel_min.0));
+    let calibration = robot.firmware().calibration();
+    let ranges =
+        calibration.map(|servo| f64::from(servo.travel_max.0) - f64::from(servo.travel_min.0));
     let largest_range = ranges.into_iter().fold(0.0, f64::max);
-    let frames = 1.5 * largest_range * STEP_SPEED_DEG_PER_S / robot.speed_limits().slew;
-    WAKING_FRAMES + 30 + (1.05 * frames) as u32
+    let longest_move_frames =
+        1.5 * largest_range * STEP_SPEED_DEG_PER_S / robot.speed_limits().slew;
+    WAKING_FRAMES + 30 + (1.05 * longest_move_frames) as u32
 }
 
-/// A robot whose frames are checked as they are sent.
+/// A robot whose frames are checked when they are sent.
 pub struct CheckedRobot<'a> {
     name: &'a str,
     robot: &'a Robot,
@@ -95,7 +100,8 @@ pub struct CheckedRobot<'a> {
     speeds: [f64; 4],
     /// True if the servos may stop at once in the next frame.
     may_stop_at_once: bool,
-    allowed_speed_change: f64,
+    /// The largest allowed change of a servo's speed from one frame to the next, deg/s.
+    max_speed_change: f64,
     /// The largest change of a servo's speed so far, deg/s.
     pub largest_speed_change: f64,
 }
@@ -109,7 +115,7 @@ impl<'a> CheckedRobot<'a> {
             running: RunningRobot::power_on(*robot.firmware()),
             speeds: [0.0; 4],
             may_stop_at_once: false,
-            allowed_speed_change: max_speed_change(robot),
+            max_speed_change: max_speed_change(robot),
             largest_speed_change: 0.0,
         };
         walker.take_output_lines();
@@ -164,9 +170,8 @@ impl<'a> CheckedRobot<'a> {
         pose_command(chassis_angles_deg(self.robot.firmware(), pose))
     }
 
-    /// Runs a number of frames.
-    pub fn run_frames(&mut self, frames: u32) {
-        for _ in 0..frames {
+    pub fn run_frames(&mut self, count: u32) {
+        for _ in 0..count {
             self.run_frame();
         }
     }
@@ -180,8 +185,8 @@ impl<'a> CheckedRobot<'a> {
         let pulses = self.running.board.submitted_pulses();
         let (pose, motion) = (self.pose(), self.running.motion());
 
-        let guard_stopped = !was_held && motion.hazard().is_some();
-        if guard_stopped {
+        let is_stopped_by_guard = !was_held && motion.hazard().is_some();
+        if is_stopped_by_guard {
             assert_eq!(
                 pose, previous_pose,
                 "{name}: the guard holds the last safe pose"
@@ -207,29 +212,29 @@ impl<'a> CheckedRobot<'a> {
             robot.speed_limits().slew
         };
         // The poses of a gait are rounded, which may add a step.
-        let fastest_speed = f64::from(previous_pose.largest_turn_to(&pose)) * STEP_SPEED_DEG_PER_S;
-        let max_speed = speed_limit
+        let largest_speed = f64::from(previous_pose.largest_turn_to(&pose)) * STEP_SPEED_DEG_PER_S;
+        let allowed_speed = speed_limit
             + if is_in_gait {
                 STEP_SPEED_DEG_PER_S
             } else {
                 0.0
             };
         assert!(
-            fastest_speed <= max_speed + 1e-6,
-            "{name}: {fastest_speed} deg/s, limit {speed_limit}"
+            largest_speed <= allowed_speed + 1e-6,
+            "{name}: {largest_speed} deg/s, limit {speed_limit}"
         );
 
         let speeds: [f64; 4] = std::array::from_fn(|n| {
             (f64::from(pose.0[n].0) - f64::from(previous_pose.0[n].0)) * STEP_SPEED_DEG_PER_S
         });
         for (speed, last_speed) in speeds.iter().zip(&self.speeds) {
-            let change = (speed - last_speed).abs();
-            if !(self.may_stop_at_once || guard_stopped) {
+            let speed_change = (speed - last_speed).abs();
+            if !(self.may_stop_at_once || is_stopped_by_guard) {
                 assert!(
-                    change <= self.allowed_speed_change,
+                    speed_change <= self.max_speed_change,
                     "{name}: {last_speed} and then {speed} deg/s"
                 );
-                self.largest_speed_change = self.largest_speed_change.max(change);
+                self.largest_speed_change = self.largest_speed_change.max(speed_change);
             }
         }
         self.speeds = speeds;
@@ -239,36 +244,36 @@ impl<'a> CheckedRobot<'a> {
 
     /// Checks that the pulses agree with robot.toml for the pose, and lie within each servo's travel.
     fn check_pulses(&self, pose: &Pose, pulses: Pulses) {
-        for (n, (servo, width)) in self.robot.servos().iter().zip(pulses.0).enumerate() {
+        for (index, (servo, width)) in self.robot.servos().iter().zip(pulses.0).enumerate() {
             if width.0 == 0 {
                 continue;
             }
-            let sweep = f64::from(pose.0[n].0) * 360.0 / 65536.0;
-            let expected = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep);
-            let error = f64::from(width.0) - expected;
+            let sweep_deg = f64::from(pose.0[index].0) * 360.0 / 65536.0;
+            let expected_cycles = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep_deg);
+            let error_cycles = f64::from(width.0) - expected_cycles;
             // The rounding errors are half a cycle for the neutral pulse, half a cycle for the product, and one cycle
             // for the gain at a sweep of half a turn.
             assert!(
-                error.abs() <= 2.0,
-                "{}: A{} is {error} cycles off",
+                error_cycles.abs() <= 2.0,
+                "{}: A{} is {error_cycles} cycles off",
                 self.name,
-                n + 1
+                index + 1
             );
-            let us = f64::from(width.0) / 16.0;
-            let travel = servo.min_us - 0.13..=servo.max_us + 0.13;
+            let width_us = f64::from(width.0) / 16.0;
+            let allowed_us = servo.min_us - 0.13..=servo.max_us + 0.13;
             assert!(
-                travel.contains(&us),
-                "{}: A{} gets {us} us",
+                allowed_us.contains(&width_us),
+                "{}: A{} gets {width_us} us",
                 self.name,
-                n + 1
+                index + 1
             );
         }
     }
 }
 
-/// Returns the command for a pose by its angles in the chassis frame, deg.
-pub fn pose_command(angles: [f64; 4]) -> String {
-    let [a1, a2, a3, a4] = angles;
+/// Returns the command for a pose, given by its angles in the chassis frame.
+pub fn pose_command(angles_deg: [f64; 4]) -> String {
+    let [a1, a2, a3, a4] = angles_deg;
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 

@@ -28,7 +28,7 @@ pub fn all_gaits() -> impl Iterator<Item = (&'static NamedRobot, &'static Checke
     })
 }
 
-/// Returns the gait of this name in the core's form; `None` if the robot has no such gait.
+/// Returns the gait with this name in the core's form; `None` if the robot has no such gait.
 fn core_gait(robot: &Robot, name: &str) -> Option<Gait> {
     let index = robot.gait(name)?.index();
     let id = GaitId::all(robot.gaits().len()).nth(index)?;
@@ -59,29 +59,29 @@ fn the_core_has_the_gaits_of_the_file_in_the_same_order() {
 
 #[test]
 fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() {
-    let mut worst_error = 0.0f64;
-    for (gait_number, (NamedRobot { name, robot }, float_gait, gait)) in all_gaits().enumerate() {
-        // For random robots, only every 13th phase is tested. Each gait has another first phase.
+    let mut max_error_deg = 0.0f64;
+    for (gait_index, (NamedRobot { name, robot }, float_gait, gait)) in all_gaits().enumerate() {
+        // A random robot is tested only at every 13th phase. The first phase differs from gait to gait.
         let (first_phase, step) = if name.contains("random") {
-            (gait_number % 13, 13)
+            (gait_index % 13, 13)
         } else {
             (0, 1)
         };
         for phase in phases().skip(first_phase).step_by(step) {
             let pose = gait.pose(robot.firmware().waves(), phase);
-            let pose_between = gait.pose(robot.firmware().waves(), phase | 0xff);
+            let pose_with_low_bits = gait.pose(robot.firmware().waves(), phase | 0xff);
             assert_eq!(
-                pose, pose_between,
+                pose, pose_with_low_bits,
                 "the phase's low bits make no difference"
             );
             let angles = float_gait.angles(f64::from(phase) / f64::from(CYCLE));
             for (servo, angle) in angles.into_iter().enumerate() {
-                let sweep = f64::from(pose.0[servo].0) / STEPS_PER_DEGREE;
-                let error = (robot.servos()[servo].neutral + sweep - angle).abs();
-                worst_error = worst_error.max(error);
+                let sweep_deg = f64::from(pose.0[servo].0) / STEPS_PER_DEGREE;
+                let error_deg = (robot.servos()[servo].neutral + sweep_deg - angle).abs();
+                max_error_deg = max_error_deg.max(error_deg);
                 assert!(
-                    error <= TABLE_ERROR_DEG,
-                    "{name}: {} at {phase}: {error} deg",
+                    error_deg <= TABLE_ERROR_DEG,
+                    "{name}: {} at {phase}: {error_deg} deg",
                     float_gait.name()
                 );
             }
@@ -92,11 +92,11 @@ fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() 
             );
         }
     }
-    println!("tables are off by at most {worst_error:.4} deg");
+    println!("the largest error of the tables is {max_error_deg:.4} deg");
 }
 
 #[test]
-fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
+fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_rest_of_the_cycle() {
     let mut leg_count = 0;
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         for (servo, stride) in float_gait.strides().iter().enumerate() {
@@ -107,8 +107,8 @@ fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
                 continue;
             }
             leg_count += 1;
-            // The leg's angle, forward positive, at a share of the cycle after the start of the stroke.
-            let foot_angle = |cycle_share: f64| {
+            // The leg's angle, positive forward, at a share of the cycle after the start of the stroke.
+            let leg_angle_deg = |cycle_share: f64| {
                 let phase = (stride.start + cycle_share).rem_euclid(1.0) * f64::from(CYCLE);
                 let pose = gait.pose(robot.firmware().waves(), phase as u32);
                 FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
@@ -116,25 +116,25 @@ fn a_leg_of_a_wave_pushes_back_for_its_duty_and_returns_in_the_rest() {
             let leg_name = format!("{name}: {} {}", float_gait.name(), LEG_NAMES[servo]);
             // In a stroke the leg moves back at constant speed, from an angle in front to the same angle behind. Then
             // it returns.
-            let front_angle = foot_angle(0.0);
-            let share = front_angle / stride.amplitude;
+            let front_angle_deg = leg_angle_deg(0.0);
+            let share = front_angle_deg / stride.amplitude;
             assert!(
                 (0.5..1.01).contains(&share),
-                "{leg_name} begins at {front_angle} deg"
+                "{leg_name} begins at {front_angle_deg} deg"
             );
             let stroke_points = [(0.25, 0.5), (0.5, 0.0), (0.75, -0.5), (1.0, -1.0)];
             let stroke_points = stroke_points.map(|(duty_share, share)| (duty_share * duty, share));
             let return_point = (0.5 * (1.0 + duty), 0.0);
             for (cycle_share, share) in stroke_points.into_iter().chain([return_point]) {
-                let error = foot_angle(cycle_share) - share * front_angle;
+                let error_deg = leg_angle_deg(cycle_share) - share * front_angle_deg;
                 assert!(
-                    error.abs() <= 2.0 * TABLE_ERROR_DEG,
-                    "{leg_name}: {error} deg at {cycle_share}"
+                    error_deg.abs() <= 2.0 * TABLE_ERROR_DEG,
+                    "{leg_name}: {error_deg} deg at {cycle_share}"
                 );
             }
         }
     }
-    assert!(leg_count > 40, "{leg_count} legs of waves");
+    assert!(leg_count > 40, "{leg_count} wave legs");
 }
 
 #[test]
@@ -154,22 +154,22 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
         gait_count += 1;
         for (servo, swing_index) in [a, b, c, d].into_iter().enumerate() {
             let amplitude = float_gait.strides()[servo].amplitude;
-            let foot_angle = |phase: f64| {
+            let leg_angle_deg = |phase: f64| {
                 let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
                 FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             // The common stroke takes the first fifth of the cycle. Then each leg returns in one fifth.
-            let start = 0.2 * (1.0 + swing_index as f64);
+            let return_start = 0.2 * (1.0 + swing_index as f64);
             for (phase, share) in [
                 (0.2, -1.0),
-                (start, -1.0),
-                (start + 0.2, 1.0),
+                (return_start, -1.0),
+                (return_start + 0.2, 1.0),
                 (1.0 - 1e-6, 1.0),
             ] {
-                let error = foot_angle(phase.min(1.0 - 1e-6)) - share * amplitude;
+                let error_deg = leg_angle_deg(phase.min(1.0 - 1e-6)) - share * amplitude;
                 assert!(
-                    error.abs() <= TABLE_ERROR_DEG,
-                    "{name}: {} at {phase}: {error} deg",
+                    error_deg.abs() <= TABLE_ERROR_DEG,
+                    "{name}: {} at {phase}: {error_deg} deg",
                     float_gait.name()
                 );
             }
@@ -195,7 +195,7 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
             };
             let gait = core_gait(robot, gait_name).expect("the core has the gait");
             path_count += 1;
-            let end_point_of = |phase: u32, end: End| {
+            let end_point_at = |phase: u32, end: End| {
                 let sweeps = gait.pose(robot.firmware().waves(), phase << 16).0;
                 let angles: [f64; 4] = std::array::from_fn(|servo| {
                     float_gait.neutral()[servo] + f64::from(sweeps[servo].0) / STEPS_PER_DEGREE
@@ -213,11 +213,11 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
                 .expect("the loops close");
             let mut mean = [0.0; 2];
             for phase in 0..256 {
-                let point = end_point_of(phase, end);
-                mean[0] += point.x / 256.0;
-                mean[1] += point.y / 256.0;
+                let end_point = end_point_at(phase, end);
+                mean[0] += end_point.x / 256.0;
+                mean[1] += end_point.y / 256.0;
                 let displacement =
-                    end_point_of(phase, other_end) - neutral.end(other_end).end_point;
+                    end_point_at(phase, other_end) - neutral.end(other_end).end_point;
                 assert!(
                     displacement.length() < 1e-9,
                     "{name}: {gait_name} moves the {other_end}"
@@ -225,10 +225,10 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
             }
             let centre = neutral.end(end).end_point;
             let length_mm = robot.lizard().links.l10;
-            let error = (mean[0] - centre.x).hypot(mean[1] - centre.y);
+            let error_mm = (mean[0] - centre.x).hypot(mean[1] - centre.y);
             assert!(
-                error < 1e-3 * length_mm,
-                "{name}: {gait_name} is {error} mm off its centre"
+                error_mm < 1e-3 * length_mm,
+                "{name}: {gait_name} is {error_mm} mm off its centre"
             );
         }
     }
@@ -239,14 +239,15 @@ fn a_path_moves_only_its_own_end_around_its_centre() {
 fn a_reversed_gait_runs_backwards_and_a_gait_reversed_twice_forwards() {
     let mut pair_count = 0;
     for NamedRobot { name, robot } in robots() {
-        for (original, reversed, sign) in [
+        for (original_name, reversed_name, sign) in [
             ("wander", "retreat", -1),
             ("wander", "advance", 1),
             ("walk", "back", -1),
         ] {
-            let (Some(original), Some(reversed)) =
-                (core_gait(robot, original), core_gait(robot, reversed))
-            else {
+            let (Some(original), Some(reversed)) = (
+                core_gait(robot, original_name),
+                core_gait(robot, reversed_name),
+            ) else {
                 continue;
             };
             pair_count += 1;
@@ -266,21 +267,22 @@ fn a_reversed_gait_runs_backwards_and_a_gait_reversed_twice_forwards() {
 fn a_mirrored_gait_is_its_original_with_left_and_right_exchanged() {
     let mut pair_count = 0;
     for NamedRobot { name, robot } in robots() {
-        for (original, mirrored) in [
+        for (original_name, mirrored_name) in [
             ("creep-along", "other-hand"),
             ("left", "right"),
             ("arc-left", "arc-right"),
         ] {
-            let (Some(original), Some(mirrored)) =
-                (core_gait(robot, original), core_gait(robot, mirrored))
-            else {
+            let (Some(original), Some(mirrored)) = (
+                core_gait(robot, original_name),
+                core_gait(robot, mirrored_name),
+            ) else {
                 continue;
             };
             pair_count += 1;
             assert_eq!(original.increment, mirrored.increment, "{name}");
             for phase in phases() {
                 let pose = mirror(original.pose(robot.firmware().waves(), phase));
-                // Halves of both signs are rounded up, and gains are rounded.
+                // A half is rounded up for both signs, and gains are rounded, so a mirrored sweep may differ by a step.
                 let deviation =
                     pose.largest_turn_to(&mirrored.pose(robot.firmware().waves(), phase));
                 assert!(deviation <= 1, "{name}: {deviation} steps");
@@ -307,7 +309,7 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
 }
 
 #[test]
-fn the_papers_symmetric_gaits_mirror_themselves_half_a_cycle_apart() {
+fn the_papers_symmetric_gaits_are_mirrored_half_a_cycle_later() {
     for name in ["walk", "trot"] {
         let gait = core_gait(paper_robot(), name).expect("a gait of the paper's robot");
         for phase in phases() {
@@ -327,19 +329,20 @@ fn the_papers_symmetric_gaits_mirror_themselves_half_a_cycle_apart() {
 #[test]
 fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
     let gait = core_gait(paper_robot(), "look").expect("a gait of the paper's robot");
-    let neutral = paper_robot().servos().map(|servo| servo.neutral);
+    let neutral_angles = paper_robot().servos().map(|servo| servo.neutral);
     for phase in (0..PHASE_COUNT).step_by(16) {
         let sweeps = gait.pose(paper_robot().firmware().waves(), phase << 8).0;
         let angles: [f64; 4] =
-            std::array::from_fn(|n| neutral[n] + f64::from(sweeps[n].0) / STEPS_PER_DEGREE);
-        let point = paper_robot()
+            std::array::from_fn(|n| neutral_angles[n] + f64::from(sweeps[n].0) / STEPS_PER_DEGREE);
+        let end_point = paper_robot()
             .lizard()
             .solve(&angles.into())
             .expect("the loops close")
             .head
             .end_point;
-        let turn = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASE_COUNT);
-        let error = (point.x - 10.0 * turn.sin()).hypot(point.y - 54.0 - 5.0 * (2.0 * turn).sin());
-        assert!(error < 0.1, "{error} mm at {phase}");
+        let cycle_angle = std::f64::consts::TAU * f64::from(phase) / f64::from(PHASE_COUNT);
+        let error_mm = (end_point.x - 10.0 * cycle_angle.sin())
+            .hypot(end_point.y - 54.0 - 5.0 * (2.0 * cycle_angle).sin());
+        assert!(error_mm < 0.1, "{error_mm} mm at {phase}");
     }
 }

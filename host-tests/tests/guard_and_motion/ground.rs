@@ -1,5 +1,5 @@
-//! Tests of the travel that the core's pulses cause. The pulses are converted back to angles for the contact model, and
-//! must move the robot as the gait in floating point does.
+//! Tests of the robot's travel due to the core's pulses. The pulses are converted back to angles for the contact model,
+//! and must move the robot as the gait in floating point does.
 
 use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{NamedRobot, paper_robot, robots};
@@ -18,16 +18,16 @@ fn angles_of_pulses(robot: &Robot, pulses: Pulses) -> [f64; 4] {
 /// Returns the robot's travel in one cycle of a gait at a speed in percent, computed from the core's pulses. The cycle
 /// begins at the frame whose phase is nearest to 0. `None` if the guard stops the robot on its path to the gait's first
 /// pose.
-fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, percent: f64) -> Option<Travel> {
+fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -> Option<Travel> {
     let robot = &named.robot;
     let mut walker = CheckedRobot::standing(named);
-    walker.expect_ok(&format!("speed {percent}"));
+    walker.expect_ok(&format!("speed {speed_percent}"));
     walker.expect_ok(&gait_command(gait));
     walker.run_frames(settling_frames(robot));
     if walker.motion().hazard().is_some() {
         return None;
     }
-    let frames_per_cycle = gait.period() * 50.0 * 100.0 / percent;
+    let frames_per_cycle = gait.period() * 50.0 * 100.0 / speed_percent;
     // The phase of a reversed gait falls, so the distance from 0 in either direction counts.
     let phase_distance = |walker: &CheckedRobot| {
         let phase = i64::from(walker.motion().phase());
@@ -44,11 +44,12 @@ fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, percent: f64) -> Opti
     for _ in 0..frames_per_cycle.ceil() as usize {
         path.push(angles_of_pulses(robot, walker.run_frame()));
     }
-    // A cycle may end between two frames.
+    // A cycle may end between two frames, so only a share of the last frame counts.
     let last_index = path.len() - 1;
-    let share = frames_per_cycle - frames_per_cycle.ceil() + 1.0;
+    let last_frame_share = frames_per_cycle - frames_per_cycle.ceil() + 1.0;
     let (previous, last) = (path[last_index - 1], path[last_index]);
-    path[last_index] = std::array::from_fn(|n| previous[n] + share * (last[n] - previous[n]));
+    path[last_index] =
+        std::array::from_fn(|n| previous[n] + last_frame_share * (last[n] - previous[n]));
     Some(robot.predict_travel(path))
 }
 
@@ -58,24 +59,24 @@ fn assert_travel(
     name: &str,
     travel: Travel,
     tolerance_mm: f64,
-    forward: Option<f64>,
-    turn: Option<f64>,
+    expected_forward_mm: Option<f64>,
+    expected_turn_deg: Option<f64>,
 ) {
     println!(
-        "{name}: {:+.2} mm, {:+.2} deg, expected {forward:?} {turn:?}",
+        "{name}: {:+.2} mm, {:+.2} deg, expected {expected_forward_mm:?} {expected_turn_deg:?}",
         travel.forward, travel.turn
     );
-    if let Some(forward) = forward {
-        let tolerance_mm = tolerance_mm.max(0.01 * forward.abs());
+    if let Some(forward_mm) = expected_forward_mm {
+        let tolerance_mm = tolerance_mm.max(0.01 * forward_mm.abs());
         assert!(
-            (travel.forward - forward).abs() <= tolerance_mm,
-            "{name}: {travel:?}, not {forward}"
+            (travel.forward - forward_mm).abs() <= tolerance_mm,
+            "{name}: {travel:?}, not {forward_mm}"
         );
     }
-    if let Some(turn) = turn {
+    if let Some(turn_deg) = expected_turn_deg {
         assert!(
-            (travel.turn - turn).abs() <= 0.2,
-            "{name}: {travel:?}, not {turn}"
+            (travel.turn - turn_deg).abs() <= 0.2,
+            "{name}: {travel:?}, not {turn_deg}"
         );
     }
 }
@@ -83,20 +84,20 @@ fn assert_travel(
 #[test]
 fn the_pulses_of_every_gait_move_the_robot_as_far_as_the_gait_in_floating_point() {
     let mut travel_count = 0;
-    // Only some of the random robots, since the contact model is slow.
+    // The contact model is slow, so the last five random robots are left out.
     for named in &robots()[..robots().len() - 5] {
         for gait in named.robot.gaits() {
-            for percent in [100.0, 20.0] {
+            for speed_percent in [100.0, 20.0] {
                 // Random robots are tested only at full speed.
-                if percent < 100.0 && named.name.starts_with("random") {
+                if speed_percent < 100.0 && named.name.starts_with("random") {
                     continue;
                 }
-                let Some(travel) = simulate_travel(named, gait, percent) else {
+                let Some(travel) = simulate_travel(named, gait, speed_percent) else {
                     continue;
                 };
                 travel_count += 1;
                 let expected = gait.predict(&named.robot.ground().with_rigid_drive());
-                let name = format!("{}: {} at {percent} %", named.name, gait.name());
+                let name = format!("{}: {} at {speed_percent} %", named.name, gait.name());
                 // On a robot without symmetry, a tenth of a degree may decide which foot sticks and which slips.
                 let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
                 assert_travel(&name, travel, tolerance_mm, expected.forward, expected.turn);
@@ -113,14 +114,14 @@ fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
         name: "paper.toml".into(),
         robot: paper_robot().clone(),
     };
-    let mut decided_count = 0;
+    let mut predicted_count = 0;
     for gait in paper_robot().gaits() {
         let expected = gait.predict(&paper_robot().ground().with_rigid_drive());
-        decided_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
-        for percent in [100.0, 80.0, 50.0, 20.0] {
-            let travel = simulate_travel(&named, gait, percent).expect("the path is clear");
+        predicted_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
+        for speed_percent in [100.0, 80.0, 50.0, 20.0] {
+            let travel = simulate_travel(&named, gait, speed_percent).expect("the path is clear");
             assert_travel(gait.name(), travel, 0.3, expected.forward, expected.turn);
         }
     }
-    assert!(decided_count >= 9, "{decided_count}");
+    assert!(predicted_count >= 9, "{predicted_count}");
 }

@@ -1,4 +1,4 @@
-//! Tests of the guard's limits, each checked to the last bit.
+//! Tests of the guard's limits, exact to the last bit.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::Hazard;
@@ -9,8 +9,8 @@ use lizard_robot::Robot;
 
 use crate::truth::{MARGINS, steps_per_mm, to_sine};
 
-/// Returns the limit of each of the ten margins from robot.toml.
-fn limits(robot: &Robot) -> [f64; 10] {
+/// Returns the limit of each of the ten margins, from robot.toml.
+fn margin_limits(robot: &Robot) -> [f64; 10] {
     let limits = robot.limits();
     std::array::from_fn(|index| match index {
         0..2 => limits.type2,
@@ -20,14 +20,14 @@ fn limits(robot: &Robot) -> [f64; 10] {
 }
 
 /// Rounds a sine up to Q15.
-fn ceil_q15(limit: f64) -> i16 {
+fn round_up_to_q15(limit: f64) -> i16 {
     (limit * 32768.0 - 1e-6).ceil() as i16
 }
 
 /// Returns a clearance with every margin exactly at its limit and both sliders at their maximum length.
 fn clearance_at_limit(robot: &Robot) -> Clearance {
     Clearance {
-        margins: limits(robot).map(|limit| Sine(ceil_q15(limit))),
+        margins: margin_limits(robot).map(|limit| Sine(round_up_to_q15(limit))),
         slider_lengths_sq: Side::ALL.map(|side| {
             let max = u32::from(robot.firmware().slider(side).stroke_max);
             max * max
@@ -70,13 +70,13 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_the_next_length_beyond_is_a_haza
             ] {
                 let mut clearance = clearance_at_limit(robot);
                 clearance.slider_lengths_sq[index] = length_sq;
-                let named_side = match clearance.first_hazard(firmware) {
+                let reported_side = match clearance.first_hazard(firmware) {
                     None => None,
                     Some(Hazard::Stroke { side, .. }) => Some(side),
                     Some(hazard) => panic!("{name}: {hazard:?}"),
                 };
                 assert_eq!(
-                    named_side,
+                    reported_side,
                     (!is_safe).then_some(side),
                     "{name}: {length_sq}"
                 );
@@ -90,15 +90,18 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
     for NamedRobot { name, robot } in robots() {
         let core_limits = robot.firmware().limits();
         let file_limits = robot.limits();
-        for (core, file) in [
+        for (core_limit, file_limit) in [
             (core_limits.type2, file_limits.type2),
             (core_limits.type1, file_limits.type1),
             (core_limits.leg, file_limits.leg),
         ] {
-            assert!(to_sine(core) >= file - 1e-9, "{name}: {core:?} for {file}");
             assert!(
-                to_sine(Sine(core.0 - 1)) < file,
-                "{name}: {core:?} for {file}"
+                to_sine(core_limit) >= file_limit - 1e-9,
+                "{name}: {core_limit:?} for {file_limit}"
+            );
+            assert!(
+                to_sine(Sine(core_limit.0 - 1)) < file_limit,
+                "{name}: {core_limit:?} for {file_limit}"
             );
         }
         let sides = [
@@ -107,10 +110,10 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
         ];
         for (side, kinematics_side) in Side::ALL.into_iter().zip(sides) {
             let slider = robot.firmware().slider(side);
-            let nominal = robot.lizard().side(kinematics_side).nominal_length;
+            let nominal_mm = robot.lizard().side(kinematics_side).nominal_length;
             let length_mm = |steps: u16| f64::from(steps) / steps_per_mm(slider.scale);
             let [min_mm, max_mm] =
-                [file_limits.stroke_min, file_limits.stroke_max].map(|travel| nominal + travel);
+                [file_limits.stroke_min, file_limits.stroke_max].map(|travel| nominal_mm + travel);
             assert!(
                 length_mm(slider.stroke_min) >= min_mm - 1e-9,
                 "{name}: {side:?}"

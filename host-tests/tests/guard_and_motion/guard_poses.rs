@@ -1,4 +1,4 @@
-//! Tests of the guard's decisions on poses anywhere in the servos' travel.
+//! Tests of the guard's decisions at poses anywhere in the servos' travel.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -8,7 +8,7 @@ use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::root::isqrt;
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{NamedRobot, rng, robots};
-use lizard_proof::STEPS_BAND;
+use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::Robot;
 
 use crate::truth::{
@@ -22,7 +22,7 @@ const POSE_COUNT: usize = 40_000;
 /// Number of pairs of neighbouring poses, one on each side of a limit, tested on each robot.
 const PAIR_COUNT: usize = 1500;
 
-/// The guard's errors and decisions for many poses of one robot. The band of a condition is the largest error that the
+/// The guard's errors and decisions at many poses of one robot. The band of a condition is the largest error that the
 /// guard may have in this condition.
 #[derive(Default)]
 struct Findings {
@@ -37,18 +37,18 @@ struct Findings {
     refused_count: usize,
     /// The number of poses where the guard and floating point decide differently.
     disagreement_count: usize,
-    /// The largest distance of such a pose from a limit, in bands.
+    /// The largest distance of such a pose from its nearest limit, in bands.
     max_disagreement_bands: f64,
     /// The number of refusals for each of the twelve conditions.
     hazard_counts: [usize; 12],
 }
 
 impl Findings {
-    fn add(&mut self, robot: &Robot, pose: &Pose) {
+    fn add_pose(&mut self, robot: &Robot, pose: &Pose) {
         let firmware = robot.firmware();
         let clearance = Clearance::of(firmware, pose);
         let hazard = clearance.first_hazard(firmware);
-        let hazard_index = hazard.map(index_of);
+        let hazard_index = hazard.map(condition_index);
         match hazard_index {
             None => self.safe_count += 1,
             Some(index) => {
@@ -59,17 +59,17 @@ impl Findings {
         let truth = match ExactConditions::of(robot, chassis_angles_deg(firmware, pose)) {
             Ok(truth) => truth,
             Err(fault) => {
-                // The guard checks the head first, so it may name an earlier condition.
-                let end_index = index_of_open_five_bar(&fault)
+                // Index 0 is the head's type-2 margin, 1 the tail's. For an open tail, the guard may name the head.
+                let open_five_bar_index = index_of_open_five_bar(&fault)
                     .expect("the sliders of these robots always have a length");
                 assert!(
-                    hazard_index.is_some_and(|index| index <= end_index),
+                    hazard_index.is_some_and(|index| index <= open_five_bar_index),
                     "{pose:?}: {fault}, {hazard:?}"
                 );
                 return;
             }
         };
-        self.compare(robot, &clearance, &truth);
+        self.compare_values(robot, &clearance, &truth);
         let distances = truth.distances_from_limits();
         for (distance, is_broken) in distances.into_iter().zip(truth.broken) {
             assert!(
@@ -104,7 +104,7 @@ impl Findings {
     }
 
     /// Compares the guard's margins and strokes with those in floating point.
-    fn compare(&mut self, robot: &Robot, clearance: &Clearance, truth: &ExactConditions) {
+    fn compare_values(&mut self, robot: &Robot, clearance: &Clearance, truth: &ExactConditions) {
         for (index, (value, expected)) in clearance.margins.iter().zip(truth.margins).enumerate() {
             let five_bar = FIVE_BAR_OF_MARGIN.get(index).copied();
             if let Some(five_bar) = five_bar
@@ -141,7 +141,8 @@ impl Findings {
         }
     }
 
-    fn report(&self, name: &str) {
+    /// Prints the findings, and asserts that every error is within its band.
+    fn print_and_check(&self, name: &str) {
         println!(
             "{name}: type-2 {}, type-1 {}, leg {}, stroke {} steps; {} safe, {} refused, \
              {} decided differently within {:.3} bands, margins within {:.3}; named {:?}",
@@ -163,7 +164,7 @@ impl Findings {
             );
         }
         assert!(
-            self.stroke.max <= STEPS_BAND,
+            self.stroke.max <= LENGTH_BAND_STEPS,
             "{name}: a stroke is {} steps off",
             self.stroke
         );
@@ -175,33 +176,34 @@ impl Findings {
 }
 
 /// Returns the index of the condition that a hazard names, among the ten margins and two strokes.
-fn index_of(hazard: Hazard) -> usize {
+fn condition_index(hazard: Hazard) -> usize {
     match hazard {
         Hazard::Margin { margin, .. } => {
             let index = MARGINS.iter().position(|known| *known == margin);
             index.expect("one of ten")
         }
         Hazard::Stroke { side, .. } => 10 + side as usize,
-        Hazard::Travel(_) => unreachable!("a clearance knows no travel"),
+        Hazard::Travel(_) => unreachable!("a clearance has no travel"),
     }
 }
 
 /// Returns random poses: some in the full travel, others nearer to neutral, where the limits of the safe poses lie.
 fn random_poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
     let calibration = robot.firmware().calibration();
-    let shares = [1.0, 0.7, 0.4, 0.2];
-    (0..POSE_COUNT).map(move |n| random_pose_within(rng, &calibration, shares[n % shares.len()]))
+    let travel_shares = [1.0, 0.7, 0.4, 0.2];
+    (0..POSE_COUNT)
+        .map(move |n| random_pose_within(rng, &calibration, travel_shares[n % travel_shares.len()]))
 }
 
 #[test]
 fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
     let mut hazard_counts = [0; 12];
-    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
+    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut findings = Findings::default();
-        for pose in random_poses(&mut rng(100 + n as u64), robot) {
-            findings.add(robot, &pose);
+        for pose in random_poses(&mut rng(100 + robot_index as u64), robot) {
+            findings.add_pose(robot, &pose);
         }
-        findings.report(name);
+        findings.print_and_check(name);
         for (sum, count) in hazard_counts.iter_mut().zip(findings.hazard_counts) {
             *sum += count;
         }
@@ -214,8 +216,8 @@ fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
 
 #[test]
 fn the_guards_decision_changes_at_the_limit_of_floating_point() {
-    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
-        let mut rng = rng(200 + n as u64);
+    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
+        let mut rng = rng(200 + robot_index as u64);
         let firmware = robot.firmware();
         let mut findings = Findings::default();
         while findings.refused_count < PAIR_COUNT {
@@ -224,14 +226,15 @@ fn the_guards_decision_changes_at_the_limit_of_floating_point() {
                 continue;
             }
             for pose in straddling_poses(robot, unsafe_pose) {
-                findings.add(robot, &pose);
+                findings.add_pose(robot, &pose);
             }
         }
-        findings.report(name);
+        findings.print_and_check(name);
     }
 }
 
-/// Returns two neighbouring poses on the path from neutral to an unsafe pose: a safe pose, then an unsafe pose.
+/// Returns two neighbouring poses on the path from neutral to an unsafe pose: a safe pose, then an unsafe pose. Shares
+/// of the path are in 1/65536.
 fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
     let pose_at = |share: u32| {
         Pose(
@@ -242,12 +245,12 @@ fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
     };
     let (mut safe_share, mut unsafe_share) = (0, 1 << 16);
     while unsafe_share - safe_share > 1 {
-        let middle = (safe_share + unsafe_share) / 2;
-        *(if is_safe(robot.firmware(), &pose_at(middle)) {
+        let middle_share = (safe_share + unsafe_share) / 2;
+        *(if is_safe(robot.firmware(), &pose_at(middle_share)) {
             &mut safe_share
         } else {
             &mut unsafe_share
-        }) = middle;
+        }) = middle_share;
     }
     [pose_at(safe_share), pose_at(unsafe_share)]
 }
@@ -255,8 +258,8 @@ fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
 #[test]
 fn a_hazard_contains_the_value_that_broke_the_limit() {
     let mut hazard_counts = [0; 2];
-    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
-        for pose in random_poses(&mut rng(300 + n as u64), robot).take(2000) {
+    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
+        for pose in random_poses(&mut rng(300 + robot_index as u64), robot).take(2000) {
             let clearance = Clearance::of(robot.firmware(), &pose);
             match clearance.first_hazard(robot.firmware()) {
                 None => {}
@@ -269,7 +272,7 @@ fn a_hazard_contains_the_value_that_broke_the_limit() {
                     );
                     hazard_counts[0] += 1;
                 }
-                Some(Hazard::Travel(_)) => unreachable!("a clearance knows no travel"),
+                Some(Hazard::Travel(_)) => unreachable!("a clearance has no travel"),
                 Some(Hazard::Stroke { side, length }) => {
                     assert_eq!(
                         length,
@@ -289,9 +292,9 @@ fn a_hazard_contains_the_value_that_broke_the_limit() {
 
 #[test]
 fn the_smallest_margin_agrees_with_kinematics() {
-    for (n, NamedRobot { name, robot }) in robots().iter().enumerate() {
+    for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut safe_count = 0;
-        for pose in random_poses(&mut rng(400 + n as u64), robot).take(10_000) {
+        for pose in random_poses(&mut rng(400 + robot_index as u64), robot).take(10_000) {
             if !is_safe(robot.firmware(), &pose) {
                 continue;
             }
@@ -312,13 +315,12 @@ fn the_smallest_margin_agrees_with_kinematics() {
 }
 
 #[test]
-fn the_guards_arithmetic_overflows_at_no_pose() {
-    // The poses include poses that no servo reaches.
-    for (n, NamedRobot { robot, .. }) in robots().iter().enumerate() {
-        let mut rng = rng(500 + n as u64);
+fn the_guards_arithmetic_never_overflows_even_beyond_the_servos_travel() {
+    for (robot_index, NamedRobot { robot, .. }) in robots().iter().enumerate() {
+        let mut rng = rng(500 + robot_index as u64);
         let mut findings = Findings::default();
         for _ in 0..10_000 {
-            findings.add(robot, &Pose([(); 4].map(|()| Sweep(rng.i16(..)))));
+            findings.add_pose(robot, &Pose([(); 4].map(|()| Sweep(rng.i16(..)))));
         }
         assert!(findings.refused_count > 0);
     }

@@ -1,12 +1,14 @@
-//! Tests of transitions from any motion to any other, for every robot: every frame keeps the limits, and every command
-//! completes.
+//! Tests of the transitions between all motions, for every robot. Every frame must keep the limits, and every command
+//! must complete.
 
 use lizard_core::motion::Activity;
+use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{NamedRobot, rng, robots};
 
 use crate::frames::{
-    CheckedRobot, WAKING_FRAMES, final_activity, max_speed_change, random_command, settling_frames,
+    CheckedRobot, WAKING_FRAMES, final_activity, gait_command, max_speed_change, random_command,
+    settling_frames,
 };
 use crate::truth::random_safe_pose;
 
@@ -15,8 +17,8 @@ const DIALOGUE_COUNT: u64 = 30;
 
 #[test]
 fn no_sequence_of_commands_makes_a_frame_unsafe_too_fast_or_too_sudden() {
-    for (n, named) in robots().iter().enumerate() {
-        let mut rng = rng(1000 + n as u64);
+    for (robot_index, named) in robots().iter().enumerate() {
+        let mut rng = rng(1000 + robot_index as u64);
         let (mut accepted_count, mut refused_count, mut largest_change) = (0, 0, 0.0f64);
         for _ in 0..DIALOGUE_COUNT {
             let mut walker = CheckedRobot::new(named);
@@ -43,10 +45,10 @@ fn no_sequence_of_commands_makes_a_frame_unsafe_too_fast_or_too_sudden() {
 
 #[test]
 fn every_command_completes_unless_the_guard_reports_a_hazard() {
-    for (n, named) in robots().iter().enumerate() {
+    for (robot_index, named) in robots().iter().enumerate() {
         let NamedRobot { name, robot } = named;
-        let mut rng = rng(2000 + n as u64);
-        let mut arrived_count = 0;
+        let mut rng = rng(2000 + robot_index as u64);
+        let mut completed_count = 0;
         for _ in 0..3 * DIALOGUE_COUNT {
             let mut walker = CheckedRobot::new(named);
             for _ in 0..3 {
@@ -83,39 +85,43 @@ fn every_command_completes_unless_the_guard_reports_a_hazard() {
                     .pose(firmware.waves(), walker.motion().phase());
                 assert_eq!(walker.pose(), pose, "{name}: {last_command}");
             }
-            arrived_count += 1;
+            completed_count += 1;
         }
         assert!(
-            arrived_count > DIALOGUE_COUNT,
-            "{name}: only {arrived_count} arrived"
+            completed_count > DIALOGUE_COUNT,
+            "{name}: only {completed_count} commands completed"
         );
     }
 }
 
 #[test]
 fn a_refused_command_changes_nothing() {
-    for (n, named) in robots().iter().enumerate() {
-        let mut rng = rng(3000 + n as u64);
+    for (robot_index, named) in robots().iter().enumerate() {
+        let mut rng = rng(3000 + robot_index as u64);
         let mut refused_count = 0;
         for _ in 0..DIALOGUE_COUNT {
-            let (mut tested, mut reference) = (CheckedRobot::new(named), CheckedRobot::new(named));
+            let (mut tested_robot, mut reference_robot) =
+                (CheckedRobot::new(named), CheckedRobot::new(named));
             for _ in 0..8 {
                 let command = random_command(&mut rng, &named.robot);
-                let frames = rng.u32(..60);
-                let is_refused = tested.say(&command).starts_with("err");
+                let frame_count = rng.u32(..60);
+                let is_refused = tested_robot.say(&command).starts_with("err");
                 if is_refused {
                     refused_count += 1;
                 } else {
-                    reference.say(&command);
+                    reference_robot.say(&command);
                 }
-                for _ in 0..frames {
+                for _ in 0..frame_count {
                     assert_eq!(
-                        tested.run_frame(),
-                        reference.run_frame(),
+                        tested_robot.run_frame(),
+                        reference_robot.run_frame(),
                         "{}: {command}",
                         named.name
                     );
-                    assert_eq!(tested.motion().activity(), reference.motion().activity());
+                    assert_eq!(
+                        tested_robot.motion().activity(),
+                        reference_robot.motion().activity()
+                    );
                 }
             }
         }
@@ -125,14 +131,14 @@ fn a_refused_command_changes_nothing() {
 
 #[test]
 fn in_a_move_all_servos_have_turned_by_the_same_share_and_arrive_together() {
-    for (n, named) in robots().iter().enumerate() {
-        let mut rng = rng(4000 + n as u64);
+    for (robot_index, named) in robots().iter().enumerate() {
+        let mut rng = rng(4000 + robot_index as u64);
         let mut arrived_count = 0;
         for _ in 0..DIALOGUE_COUNT {
             let goal = random_safe_pose(&mut rng, named.robot.firmware());
             let mut walker = CheckedRobot::standing(named);
             if !walker.say(&walker.pose_command(&goal)).starts_with("ok") {
-                continue; // rounded to hundredths of a degree, the pose is beyond a limit
+                continue; // the command rounds the pose to hundredths of a degree, here beyond a limit
             }
             let mut poses = vec![walker.pose()];
             while walker.motion().activity() == Activity::Pose && poses.len() < 1000 {
@@ -167,12 +173,12 @@ fn in_a_move_all_servos_have_turned_by_the_same_share_and_arrive_together() {
 
 #[test]
 fn servos_wake_one_after_another_in_the_pose_before_the_rest() {
-    for (n, named) in robots().iter().enumerate() {
+    for (robot_index, named) in robots().iter().enumerate() {
         let calibration = named.robot.firmware().calibration();
         let mut walker = CheckedRobot::new(named);
         for pose_before_rest in [
             Pose::NEUTRAL,
-            random_safe_pose(&mut rng(5000 + n as u64), named.robot.firmware()),
+            random_safe_pose(&mut rng(5000 + robot_index as u64), named.robot.firmware()),
         ] {
             if pose_before_rest != Pose::NEUTRAL {
                 walker.say(&walker.pose_command(&pose_before_rest));
@@ -182,23 +188,23 @@ fn servos_wake_one_after_another_in_the_pose_before_the_rest() {
                 walker.expect_ok("stand");
             }
             let held_pose = walker.pose();
-            let mut first_frames = [0; 4];
+            let mut first_pulse_frames = [0; 4];
             for frame in 1..=WAKING_FRAMES {
                 for (servo, width) in walker.run_frame().0.into_iter().enumerate() {
-                    if width.0 > 0 && first_frames[servo] == 0 {
-                        first_frames[servo] = frame;
+                    if width.0 > 0 && first_pulse_frames[servo] == 0 {
+                        first_pulse_frames[servo] = frame;
                     }
-                    let expected = calibration[servo].width(held_pose.0[servo]);
-                    assert!(width.0 == 0 || width == expected, "{}", named.name);
+                    let expected_width = calibration[servo].width(held_pose.0[servo]);
+                    assert!(width.0 == 0 || width == expected_width, "{}", named.name);
                     assert_eq!(
                         width.0 > 0,
-                        first_frames[servo] > 0,
+                        first_pulse_frames[servo] > 0,
                         "a servo that is awake stays awake"
                     );
                 }
             }
             // The servos wake a tenth of a second apart.
-            assert_eq!(first_frames, [5, 10, 15, 20], "{}", named.name);
+            assert_eq!(first_pulse_frames, [5, 10, 15, 20], "{}", named.name);
             walker.run_frames(settling_frames(&named.robot));
         }
     }
@@ -206,27 +212,27 @@ fn servos_wake_one_after_another_in_the_pose_before_the_rest() {
 
 #[test]
 fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_start_again() {
-    for (n, named) in robots().iter().enumerate() {
-        let mut rng = rng(6000 + n as u64);
+    for (robot_index, named) in robots().iter().enumerate() {
+        let mut rng = rng(6000 + robot_index as u64);
         let robot = &named.robot;
         for _ in 0..DIALOGUE_COUNT {
             let mut walker = CheckedRobot::standing(named);
             let gait_index = rng.usize(..robot.gaits().len());
-            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait_index]));
+            walker.expect_ok(&gait_command(&robot.gaits()[gait_index]));
             walker.run_frames(rng.u32(..200));
-            let pose = walker.pose();
+            let last_gait_pose = walker.pose();
             let command = ["stop", "rest"][rng.usize(..2)];
             walker.expect_ok(command);
             for _ in 0..5 {
                 let is_silent = walker.run_frame().0.iter().all(|width| width.0 == 0);
                 assert_eq!(is_silent, command == "rest", "{}", named.name);
-                assert_eq!(walker.pose(), pose, "{}", named.name);
+                assert_eq!(walker.pose(), last_gait_pose, "{}", named.name);
                 assert_eq!(walker.motion().phase(), 0, "{}", named.name);
             }
             walker.expect_ok("stand");
-            walker.expect_ok(&crate::frames::gait_command(&robot.gaits()[gait_index]));
+            walker.expect_ok(&gait_command(&robot.gaits()[gait_index]));
             let firmware = robot.firmware();
-            let id = lizard_core::numbers::gaits::GaitId::all(firmware.gait_count())
+            let id = GaitId::all(firmware.gait_count())
                 .nth(gait_index)
                 .expect("a gait");
             let first_pose = firmware.gait(id).pose(firmware.waves(), 0);

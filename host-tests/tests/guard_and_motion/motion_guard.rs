@@ -1,7 +1,8 @@
-//! Tests of moves between two safe poses with an unsafe pose on the path.
+//! Tests of the guard during motion: moves between two safe poses with an unsafe pose on the path, and running gaits.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
+use lizard_core::guard::hazard::Hazard;
 use lizard_core::motion::Activity;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::Sweep;
@@ -21,30 +22,32 @@ fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let calibration = robot.firmware().calibration();
     let pose_near_limit = |rng: &mut Rng| {
         // Two cranks of one five-bar or of one side are near a limit; the other two are at neutral.
-        let [a, b] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
+        let [first_servo, second_servo] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
         let random_pose = random_pose_within(rng, &calibration, 1.0);
         let mut pose = Pose::NEUTRAL;
-        (pose.0[a], pose.0[b]) = (random_pose.0[a], random_pose.0[b]);
-        let mut share = 256;
-        while !is_safe(robot.firmware(), &scale_pose(&pose, share)) {
-            share -= 4;
+        (pose.0[first_servo], pose.0[second_servo]) =
+            (random_pose.0[first_servo], random_pose.0[second_servo]);
+        let mut share_256 = 256;
+        while !is_safe(robot.firmware(), &scale_pose(&pose, share_256)) {
+            share_256 -= 4;
         }
-        scale_pose(&pose, share)
+        scale_pose(&pose, share_256)
     };
     let mut pairs = Vec::new();
     for _ in 0..TRY_COUNT {
-        let (from, to) = (pose_near_limit(rng), pose_near_limit(rng));
-        let [from_sweeps, to_sweeps] =
-            [from, to].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
-        let is_unsafe_at = |n: u32| {
-            let share = f64::from(n) / 50.0;
-            let pose = Pose(std::array::from_fn(|n| {
-                Sweep((from_sweeps[n] + share * (to_sweeps[n] - from_sweeps[n])) as i16)
+        let (start_pose, end_pose) = (pose_near_limit(rng), pose_near_limit(rng));
+        let [start_sweeps, end_sweeps] =
+            [start_pose, end_pose].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
+        let is_unsafe_at = |step: u32| {
+            let share = f64::from(step) / 50.0;
+            let pose = Pose(std::array::from_fn(|servo| {
+                let sweep = start_sweeps[servo] + share * (end_sweeps[servo] - start_sweeps[servo]);
+                Sweep(sweep as i16)
             }));
             Verdict::of(robot, chassis_angles_deg(robot.firmware(), &pose)) == Verdict::Unsafe
         };
         if (1..50).step_by(4).any(is_unsafe_at) {
-            pairs.push([from, to]);
+            pairs.push([start_pose, end_pose]);
         }
         if pairs.len() == MAX_PATH_COUNT {
             break;
@@ -64,26 +67,33 @@ fn scale_pose(pose: &Pose, share_256: i32) -> Pose {
 #[test]
 fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
     let mut held_count = 0;
-    for (n, named) in robots().iter().enumerate() {
+    for (robot_index, named) in robots().iter().enumerate() {
         let NamedRobot { name, robot } = named;
-        for [from, to] in pairs_with_unsafe_path(&mut rng(7000 + n as u64), robot) {
+        for [start_pose, end_pose] in
+            pairs_with_unsafe_path(&mut rng(7000 + robot_index as u64), robot)
+        {
             let mut walker = CheckedRobot::standing(named);
-            // Rounded to hundredths of a degree, the pose may be beyond a limit.
-            if !walker.say(&walker.pose_command(&from)).starts_with("ok") {
+            // The command rounds the pose to hundredths of a degree, so the pose may be beyond a limit.
+            if !walker
+                .say(&walker.pose_command(&start_pose))
+                .starts_with("ok")
+            {
                 continue;
             }
             walker.run_frames(settling_frames(robot));
             if walker.motion().hazard().is_some()
-                || !walker.say(&walker.pose_command(&to)).starts_with("ok")
+                || !walker
+                    .say(&walker.pose_command(&end_pose))
+                    .starts_with("ok")
             {
                 continue;
             }
-            let from = walker.pose();
+            let start_pose = walker.pose();
             // Also checks that every frame is safe.
             walker.run_frames(settling_frames(robot));
             // A fast move may cross a narrow unsafe region between two frames.
             let Some(hazard) = walker.motion().hazard() else {
-                assert!(walker.pose().largest_turn_to(&to) <= 1, "{name}");
+                assert!(walker.pose().largest_turn_to(&end_pose) <= 1, "{name}");
                 continue;
             };
             held_count += 1;
@@ -96,20 +106,26 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             );
             // The reported hazard lies ahead on the path.
             assert!(
-                breaks_condition_ahead(robot.firmware(), from, to, walker.pose(), hazard),
+                breaks_condition_ahead(
+                    robot.firmware(),
+                    start_pose,
+                    end_pose,
+                    walker.pose(),
+                    hazard
+                ),
                 "{name}: {hazard:?}"
             );
-            let pose = walker.pose();
+            let held_pose = walker.pose();
             walker.run_frames(20);
-            assert_eq!(walker.pose(), pose, "{name}");
+            assert_eq!(walker.pose(), held_pose, "{name}");
             assert!(
                 walker.take_output_lines().is_empty(),
-                "{name}: reported once"
+                "{name}: the hazard is reported only once"
             );
             assert!(walker.say("status").contains(" guard=held "), "{name}");
             // The robot can move back, unless the guard stops it again.
             assert!(
-                walker.move_to(&from) || walker.motion().hazard().is_some(),
+                walker.move_to(&start_pose) || walker.motion().hazard().is_some(),
                 "{name}"
             );
             if walker.motion().hazard().is_none() {
@@ -117,31 +133,31 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             }
         }
     }
-    println!("{held_count} moves were stopped on their path");
+    println!("the guard stopped {held_count} moves");
     assert!(held_count >= 10);
 }
 
 /// True if the rest of the path from the held pose breaks the condition that a hazard names.
 fn breaks_condition_ahead(
     firmware: &CoreRobot,
-    from: Pose,
-    to: Pose,
+    start_pose: Pose,
+    end_pose: Pose,
     held_pose: Pose,
-    hazard: lizard_core::guard::hazard::Hazard,
+    hazard: Hazard,
 ) -> bool {
-    use lizard_core::guard::hazard::Hazard;
     let is_same_condition = |other_hazard: Hazard| match (hazard, other_hazard) {
         (Hazard::Margin { margin: a, .. }, Hazard::Margin { margin: b, .. }) => a == b,
         (Hazard::Stroke { side: a, .. }, Hazard::Stroke { side: b, .. }) => a == b,
         _ => false,
     };
-    (0..=4000).any(|n| {
-        let share = f64::from(n) / 4000.0;
-        let pose = Pose(std::array::from_fn(|n| {
-            let (from, to) = (f64::from(from.0[n].0), f64::from(to.0[n].0));
-            Sweep((from + share * (to - from)).round() as i16)
+    (0..=4000).any(|step| {
+        let share = f64::from(step) / 4000.0;
+        let pose = Pose(std::array::from_fn(|servo| {
+            let [start, end] = [&start_pose, &end_pose].map(|pose| f64::from(pose.0[servo].0));
+            Sweep((start + share * (end - start)).round() as i16)
         }));
-        let is_ahead = held_pose.largest_turn_to(&from) <= pose.largest_turn_to(&from) + 1;
+        let is_ahead =
+            held_pose.largest_turn_to(&start_pose) <= pose.largest_turn_to(&start_pose) + 1;
         is_ahead
             && Clearance::of(firmware, &pose)
                 .first_hazard(firmware)

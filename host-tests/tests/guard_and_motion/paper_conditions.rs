@@ -11,9 +11,9 @@ use lizard_host_tests::paper_robot;
 
 use crate::truth::{chassis_angles_deg, is_safe};
 
-/// The head's crank angles at which the two crank tips coincide, deg. This is the real singularity: the couplers lie on
-/// each other, and the head can swing freely.
-const SINGULAR_CRANK_ANGLES: [f64; 2] = [70.52878, 109.47122];
+/// The head's crank angles at which the two crank tips coincide. This is the real singularity: the couplers lie on each
+/// other, and the head can swing freely.
+const SINGULAR_CRANK_ANGLES_DEG: [f64; 2] = [70.52878, 109.47122];
 
 /// The values of the conditions printed in the paper, at one pose.
 struct PrintedConditions {
@@ -46,9 +46,9 @@ impl PrintedConditions {
     }
 }
 
-fn pose_with_head_at(theta1: f64, theta4: f64) -> Pose {
+fn pose_with_head_at(theta1_deg: f64, theta4_deg: f64) -> Pose {
     let mut pose = Pose::NEUTRAL;
-    for (servo, degrees) in [theta1, theta4].into_iter().enumerate() {
+    for (servo, degrees) in [theta1_deg, theta4_deg].into_iter().enumerate() {
         let centideg = (100.0 * degrees).round() as i32;
         let neutral = paper_robot().firmware().neutral_angles()[servo];
         pose.0[servo] = neutral.sweep_to(Angle::from_centideg(centideg));
@@ -94,10 +94,11 @@ fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
 fn the_papers_condition_accepts_the_real_singularity_and_the_guard_refuses_it() {
     let mut largest_sine = 0.0f64;
     for direction_deg in 0..360 {
-        let (delta4, delta1) = f64::from(direction_deg).to_radians().sin_cos();
+        let (theta4_change_deg, theta1_change_deg) =
+            f64::from(direction_deg).to_radians().sin_cos();
         let pose = pose_with_head_at(
-            SINGULAR_CRANK_ANGLES[0] + delta1,
-            SINGULAR_CRANK_ANGLES[1] + delta4,
+            SINGULAR_CRANK_ANGLES_DEG[0] + theta1_change_deg,
+            SINGULAR_CRANK_ANGLES_DEG[1] + theta4_change_deg,
         );
         largest_sine = largest_sine.max(PrintedConditions::of(&pose).head);
         assert_eq!(
@@ -109,14 +110,14 @@ fn the_papers_condition_accepts_the_real_singularity_and_the_guard_refuses_it() 
     println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {largest_sine:.3}");
     assert!(largest_sine > 0.95);
     // The guard also refuses the singularity itself, and the same singularity of the tail.
-    let head = pose_with_head_at(SINGULAR_CRANK_ANGLES[0], SINGULAR_CRANK_ANGLES[1]);
-    assert_eq!(refused_margin(&head), Some(Margin::Type2(End::Head)));
-    let Pose([a1, a2, ..]) = head;
-    let tail = Pose([Sweep(0), Sweep(0), Sweep(-a2.0), Sweep(-a1.0)]);
-    assert_eq!(refused_margin(&tail), Some(Margin::Type2(End::Tail)));
+    let head_pose = pose_with_head_at(SINGULAR_CRANK_ANGLES_DEG[0], SINGULAR_CRANK_ANGLES_DEG[1]);
+    assert_eq!(refused_margin(&head_pose), Some(Margin::Type2(End::Head)));
+    let Pose([a1, a2, ..]) = head_pose;
+    let tail_pose = Pose([Sweep(0), Sweep(0), Sweep(-a2.0), Sweep(-a1.0)]);
+    assert_eq!(refused_margin(&tail_pose), Some(Margin::Type2(End::Tail)));
 }
 
-/// Returns the margin for which the guard refuses a pose; `None` if it refuses no margin.
+/// Returns the margin for which the guard refuses a pose; `None` if the guard accepts every margin.
 fn refused_margin(pose: &Pose) -> Option<Margin> {
     let firmware = paper_robot().firmware();
     match Clearance::of(firmware, pose).first_hazard(firmware) {

@@ -11,7 +11,7 @@ use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep};
 use lizard_kinematics::{Check, Infeasible, Limits, Part};
-use lizard_proof::STEPS_BAND;
+use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::{CoreRobot, Robot};
 
 /// The maximum error of a margin due to the guard's arithmetic, as a sine. The rounding of lengths adds to this error.
@@ -102,8 +102,9 @@ impl ExactConditions {
             *type2 = type2.copysign(k2);
         }
         let firmware = robot.firmware();
-        let side_band = |side| STEPS_BAND / steps_per_mm(firmware.slider(side).scale);
-        let end_band = |end| STEPS_BAND / steps_per_mm(firmware.five_bar(end).bars().scale());
+        let side_band = |side| LENGTH_BAND_STEPS / steps_per_mm(firmware.slider(side).scale);
+        let end_band =
+            |end| LENGTH_BAND_STEPS / steps_per_mm(firmware.five_bar(end).bars().scale());
         let [
             [head_type2, a1_type1, a2_type1],
             [tail_type2, a4_type1, a3_type1],

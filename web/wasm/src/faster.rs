@@ -153,7 +153,7 @@ impl FasterSearch {
                 parameters,
             })
         });
-        let best = self.tuning.best(scored_parameters.collect())?;
+        let best = self.tuning.build_best(scored_parameters.collect())?;
         let comparison = self.tuning.compare(&best, robots);
         Some(Found {
             bars: best.gait().bars()?,
@@ -219,7 +219,9 @@ mod tests {
         let tried_parameters: Vec<_> = tried_parameters.collect();
         let scores = tried_parameters.iter().map(|entry| entry.score);
         assert_eq!(best, Some(scores.fold(f64::NEG_INFINITY, f64::max)));
-        let best_tuned = tuning.best(tried_parameters).expect("a gait was valid");
+        let best_tuned = tuning
+            .build_best(tried_parameters)
+            .expect("a gait was valid");
         assert_eq!(found.comparison, tuning.compare(&best_tuned, 20));
         // The page takes over exactly the gait that was found.
         assert_eq!(found.bars.to_toml(), best_tuned.table());

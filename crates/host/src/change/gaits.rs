@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::shared::json;
 use crate::shared::pose_args::ANGLE_NAMES;
 use crate::shared::progress::Spinner;
-use crate::shared::suggestion::did_you_mean;
+use crate::shared::suggestion::suggestion_text;
 use crate::{Failure, RobotFile};
 
 /// Check every gait of robot.toml and predict how far it walks.
@@ -95,7 +95,7 @@ fn trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
         return Err(Failure::Input(format!(
             "--trace {name}: the gaits are {}{}",
             names.join(", "),
-            did_you_mean(name, names)
+            suggestion_text(name, names)
         )));
     };
     let mut text = format!("seconds,{}\n", ANGLE_NAMES.join(","));

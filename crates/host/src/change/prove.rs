@@ -3,14 +3,14 @@
 
 use std::io::{self, Write};
 
-use lizard_proof::{PIECES, PairSample, Proof, STEPS_BAND, Walk};
+use lizard_proof::{GuardComparison, LENGTH_BAND_STEPS, PIECE_COUNT, PairSample, Proof};
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::format_grouped;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{SpreadArgs, Spreads};
+use crate::shared::spread::{SpreadArgs, Spreadable};
 
 /// Compare the firmware's guard with floating point at every possible pose.
 ///
@@ -42,10 +42,10 @@ pub struct Args {
     spread: SpreadArgs,
 }
 
-impl Spreads for Args {
+impl Spreadable for Args {
     const COMMAND: &'static str = "prove";
 
-    fn spread(&mut self) -> &mut SpreadArgs {
+    fn spread_args(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }
@@ -61,14 +61,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
         one_in: args.one_in,
         offset: args.offset,
     };
-    let rows = Proof::rows(guard) * args.spread.own_piece_count(PIECES) as u64 / PIECES as u64;
+    let rows = Proof::row_count(guard) * args.spread.own_piece_count(PIECE_COUNT) as u64
+        / PIECE_COUNT as u64;
     let bar = progress_bar(
         rows as usize,
         "{bar:40} {percent} % of all rows, {eta} left",
     );
-    let walk = Walk::new(&robot, guard, sample);
-    let check_piece = |index| walk.piece(index, &|checked_rows| bar.inc(checked_rows));
-    let pieces = args.spread.all_pieces(&args, PIECES, check_piece)?;
+    let comparison = GuardComparison::new(&robot, guard, sample);
+    let check_piece =
+        |index| comparison.compare_piece(index, &|checked_rows| bar.inc(checked_rows));
+    let pieces = args.spread.all_pieces(&args, PIECE_COUNT, check_piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
@@ -82,7 +84,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         print(&proof, sample, &mut out)?;
     }
     out.flush()?;
-    match proof.wrong() {
+    match proof.wrong_count() {
         0 => Ok(()),
         wrong => Err(Failure::Impossible(format!(
             "the guard decides {wrong} pairs wrong that are outside the band or in a cell"
@@ -112,7 +114,7 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
             format_grouped(tally.pair_count as f64, 0),
             format_value(tally.max_type2_error.or(tally.max_leg_error), 5),
             format_value(tally.max_type1_error, 5),
-            format_value(tally.max_travel_error, 4),
+            format_value(tally.max_slider_error, 4),
             format_value(tally.max_margin_difference, 6),
             format_value(tally.max_length_difference, 4),
             tally.wrong_count
@@ -133,16 +135,16 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
         "\n{sample_text}, in steps of 0.0055 deg, of a robot with tables {:08x}",
         proof.hash
     )?;
-    if proof.wrong() == 0 {
+    if proof.wrong_count() == 0 {
         writeln!(
             out,
-            "no pose that is farther than {:.4} (a sine) or {STEPS_BAND} steps of length from a limit is decided wrong",
+            "no pose that is farther than {:.4} (a sine) or {LENGTH_BAND_STEPS} steps of length from a limit is decided wrong",
             proof.margin_band
         )?;
         writeln!(
             out,
             "the guard accepts all {} pairs in the robot's cells, where the firmware does not ask it",
-            format_grouped(proof.certified() as f64, 0)
+            format_grouped(proof.certified_count() as f64, 0)
         )?;
     }
     Ok(())

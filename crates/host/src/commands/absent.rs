@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use super::known::CommandEntry;
 use crate::Failure;
-use crate::shared::suggestion::did_you_mean;
+use crate::shared::suggestion::suggestion_text;
 
 /// Describes the commands that need a feature, for messages.
 pub(super) fn describe_feature(feature: &str) -> &'static str {
@@ -121,7 +121,7 @@ fn explain_absence_in_build(
     let is_called =
         |command: &&CommandEntry| command.name() == word || command.aliases.contains(&word);
     let Some(command) = commands.iter().find(is_called) else {
-        let suggestion = did_you_mean(word, names.iter().map(String::as_str));
+        let suggestion = suggestion_text(word, names.iter().map(String::as_str));
         return Failure::Input(format!(
             "there is no command `{word}`{suggestion}; lizard --help lists them"
         ));

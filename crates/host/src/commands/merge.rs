@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::Failure;
 use crate::shared::files;
-use crate::shared::spread::{PartOutput, Spreads, wrong_parts_failure};
+use crate::shared::spread::{PartOutput, Spreadable, wrong_parts_failure};
 
 /// Join the parts of a long computation
 ///
@@ -149,13 +149,13 @@ impl MergedParts {
         not(any(feature = "paper", feature = "parts")),
         allow(dead_code, reason = "this build has no command with parts")
     )]
-    fn run<C: Spreads>(
+    fn run<C: Spreadable>(
         self,
         run_command: impl FnOnce(C) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let mut command: C =
             serde_json::from_value(self.options).map_err(|_| wrong_parts_failure())?;
-        command.spread().set_merged(self.robot, self.results);
+        command.spread_args().set_merged(self.robot, self.results);
         run_command(command)
     }
 }

@@ -73,7 +73,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         robot_bytes: robot.section().len(),
         robot_space: SPACE_BYTES,
     };
-    json::print_json_or(args.json, &image_file, || image_file.text())
+    json::print_json_or_text(args.json, &image_file, || image_file.text())
 }
 
 impl ImageFile {

@@ -79,7 +79,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .into_iter()
         .map(PortLine::from_port)
         .collect();
-    json::print_json_or(args.json, &lines, || text(&lines))
+    json::print_json_or_text(args.json, &lines, || text(&lines))
 }
 
 fn text(lines: &[PortLine]) -> String {

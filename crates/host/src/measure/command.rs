@@ -9,7 +9,7 @@ use lizard_robot::{CheckedGait, Robot};
 use super::filming::{Filming, parse_height};
 use super::picture;
 use crate::shared::progress::Spinner;
-use crate::shared::suggestion::did_you_mean;
+use crate::shared::suggestion::suggestion_text;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
@@ -86,7 +86,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if let Some(path) = args.picture {
         files::write(&path, picture::draw(&report).as_bytes())?;
     }
-    json::print_json_or(args.json, &report, || report.text())
+    json::print_json_or_text(args.json, &report, || report.text())
 }
 
 /// Finds the gait that is called `name`.
@@ -103,7 +103,7 @@ fn find_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failur
             Err(Failure::Input(format!(
                 "robot.toml has no gait `{name}`; those that move are {}{}",
                 names.join(", "),
-                did_you_mean(name, names)
+                suggestion_text(name, names)
             )))
         }
     }

@@ -97,7 +97,7 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     }
     let written_path = has_changes.then_some(args.output.as_path());
     let report = KeysReport::new(&identified, written_path);
-    json::print_json_or(args.json, &report, || {
+    json::print_json_or_text(args.json, &report, || {
         report_text(&identified, written_path)
     })
 }

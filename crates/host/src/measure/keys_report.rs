@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use lizard_identify::{Card, Goodness, Identified, KeyResult, PARTS, Row, Verdict};
+use lizard_identify::{Card, Goodness, Identified, KeyResult, MovementResult, PARTS, Verdict};
 use serde::Serialize;
 
 /// The identified keys, with the field names of `--json`.
@@ -97,7 +97,7 @@ impl KeysReport {
                 explains: identified.goodness.is_explained,
                 errors_widened: identified.goodness.error_factor,
             },
-            gaits: identified.rows.iter().map(GaitLine::new).collect(),
+            gaits: identified.movements.iter().map(GaitLine::new).collect(),
             written: written_path.map(Path::to_owned),
         }
     }
@@ -122,7 +122,7 @@ impl KeyLine {
 }
 
 impl GaitLine {
-    fn new(row: &Row) -> Self {
+    fn new(row: &MovementResult) -> Self {
         Self {
             gait: row.measured.gait.clone(),
             speed: 100.0 * row.measured.pace,
@@ -168,7 +168,7 @@ pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) 
         "\n{:<28}{:>9}{:>7}{:>9}{:>9}",
         "a cycle", "measured", "error", "before", "after"
     );
-    for row in &identified.rows {
+    for row in &identified.movements {
         text += &row_lines(row);
     }
     text += "\n";
@@ -227,7 +227,7 @@ fn goodness_text(identified: &Identified) -> String {
         "{figures} figures: chi-square {chi_before:.1} by robot.toml, {chi_after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
     );
     let (name, _) = PARTS[part_index];
-    let gait = &identified.rows[row_index].measured.gait;
+    let gait = &identified.movements[row_index].measured.gait;
     let comparison = if errors > 0.0 { "more" } else { "less" };
     let worst_text = format!(
         "`{gait}`, {name}: {:.1} errors {comparison} than the model",
@@ -263,7 +263,7 @@ fn goodness_text(identified: &Identified) -> String {
     text
 }
 
-fn row_lines(row: &Row) -> String {
+fn row_lines(row: &MovementResult) -> String {
     let movement = &row.measured;
     let gait = match movement.pace {
         1.0 => movement.gait.clone(),

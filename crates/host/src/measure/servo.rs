@@ -147,7 +147,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
         let new_text = report.new_robot_text(&text)?;
         files::write(output, new_text.as_bytes())?;
     }
-    json::print_json_or(args.json, &report, || report.text())
+    json::print_json_or_text(args.json, &report, || report.text())
 }
 
 impl Report {

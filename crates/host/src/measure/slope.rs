@@ -81,7 +81,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
         .collect::<Result<_, Failure>>()?;
     drop(spinner);
     let report = Report::new(&robot, &slides);
-    json::print_json_or(args.json, &report, || report.text())
+    json::print_json_or_text(args.json, &report, || report.text())
 }
 
 /// The mean of figures that share a systematic error, such as that of the level board; `None` if `figures` is empty.

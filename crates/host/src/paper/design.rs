@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 
 use lizard_paper::design::{
     CLAIMED_LCI, ChartPoint, Conditioning, Demands, Design, PROPORTION_SUM, Performance,
-    Proportions, Search, compute_chart, find_design, merge_ranked, triangle_points,
+    Proportions, Search, compute_chart_points, find_design, merge_and_rank, triangle_points,
 };
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -14,11 +14,11 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::pose_args::Quantity;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{SpreadArgs, Spreads};
+use crate::shared::spread::{SpreadArgs, Spreadable};
 
-/// Number of rings at which the inscribed circle of a single design is sampled.
+/// Number of rings on which the inscribed circle of a single design is sampled.
 const FINE_RING_COUNT: usize = 128;
-/// Number of rings at which the inscribed circles are sampled if there are many designs.
+/// Number of rings on which the inscribed circles of many designs are sampled.
 pub const COARSE_RING_COUNT: usize = 32;
 
 /// Dimensional synthesis of the head and tail five-bar.
@@ -75,15 +75,15 @@ pub struct Args {
     spread: SpreadArgs,
 }
 
-impl Spreads for Args {
+impl Spreadable for Args {
     const COMMAND: &'static str = "design";
 
-    fn spread(&mut self) -> &mut SpreadArgs {
+    fn spread_args(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }
 
-/// A parser of numbers in a range.
+/// Returns a parser for numbers from `min` to `max`. `range` is the range in words, for the error message.
 fn range_parser(
     min: f64,
     max: f64,
@@ -105,8 +105,8 @@ fn parse_base(text: &str) -> Result<f64, String> {
 /// Prints the synthesis, the charts or the ranking.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, proportions that make no mechanism, `--part` without `--search`, or an output that
-/// cannot be written.
+/// Fails for an invalid robot.toml, proportions outside the design space, `--part` without `--search`, or an output
+/// that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.spread.part().is_some() && !args.search {
         return Err(Failure::Input(
@@ -126,7 +126,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         if args.json {
             json::write_line(&mut out, &report)?;
         } else {
-            out.write_all(report.text(&robot).as_bytes())?;
+            out.write_all(report.to_text(&robot).as_bytes())?;
         }
     }
     Ok(out.flush()?)
@@ -173,7 +173,7 @@ impl Report {
         }
     }
 
-    fn text(&self, robot: &Robot) -> String {
+    fn to_text(&self, robot: &Robot) -> String {
         let Proportions { r1, r2, r3 } = self.proportions;
         let performance = &self.performance;
         let mut text = format!(
@@ -207,7 +207,7 @@ LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIMED_LCI} on {:.1}
                     lci.most,
                     100.0 * lci.share_above,
                 );
-                text += &verdict(lci, performance.r_mic);
+                text += &claim_verdict(lci, performance.r_mic);
             }
         }
         let links = robot.lizard().links;
@@ -236,8 +236,8 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
     }
 }
 
-/// The line of text that says where the paper's claim "LCI > 0.7" holds.
-fn verdict(lci: &Conditioning, r_mic: f64) -> String {
+/// The line of text about the paper's claim "LCI > 0.7".
+fn claim_verdict(lci: &Conditioning, r_mic: f64) -> String {
     let mean_verdict = if lci.mean > CLAIMED_LCI {
         "holds"
     } else {
@@ -262,7 +262,7 @@ pub fn compute_charts(step: f64, ring_count: usize) -> Vec<ChartPoint> {
         points.len(),
         "performance charts {bar:40} {pos}/{len} {eta}",
     );
-    let points = compute_chart(points, ring_count, &|| bar.inc(1));
+    let points = compute_chart_points(points, ring_count, &|| bar.inc(1));
     bar.finish_and_clear();
     points
 }
@@ -334,9 +334,9 @@ fn print_ranking(
     let Some(pieces) = pieces else {
         return Ok(());
     };
-    let designs = merge_ranked(pieces);
+    let designs = merge_and_rank(pieces);
     let top_designs = &designs[..designs.len().min(args.top)];
-    let reference = find_design(given_proportions, &demands);
+    let given_design = find_design(given_proportions, &demands);
     if args.json {
         return Ok(json::write_line(out, &top_designs)?);
     }
@@ -355,7 +355,7 @@ fn print_ranking(
         out,
         "rank     r1     r2     r3   crank  coupler mm   theta1  sweep deg   LCI  margin  stride mm  score"
     )?;
-    let write_line = |out: &mut dyn Write, rank: &str, design: &Design| {
+    let write_row = |out: &mut dyn Write, rank: &str, design: &Design| {
         let Proportions { r1, r2, r3 } = design.proportions;
         writeln!(
             out,
@@ -372,16 +372,16 @@ fn print_ranking(
         )
     };
     for (i, design) in top_designs.iter().enumerate() {
-        write_line(out, &(i + 1).to_string(), design)?;
+        write_row(out, &(i + 1).to_string(), design)?;
     }
-    match reference {
+    match given_design {
         None => writeln!(
             out,
             "\nThe given design (r1 {}, r2 {}, r3 {}) does not.",
             given_proportions.r1, given_proportions.r2, given_proportions.r3
         )?,
         Some(mut given_design) => {
-            // Scores are relative to the best value of each criterion, which may be that of the given design.
+            // A score is relative to the best value of each criterion. The given design may have the best value.
             let best_of = |value: fn(&Design) -> f64| {
                 designs
                     .iter()
@@ -402,7 +402,7 @@ fn print_ranking(
                 .filter(|d| d.score > given_design.score + 1e-9)
                 .count();
             writeln!(out, "\nthe given design:")?;
-            write_line(out, &rank.to_string(), &given_design)?;
+            write_row(out, &rank.to_string(), &given_design)?;
         }
     }
     Ok(())

@@ -46,7 +46,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Measures every equation at this number of random poses, with a progress bar.
+/// Measures every equation at `sample_count` random poses, with a progress bar.
 fn measure(sample_count: u32) -> Vec<Entry> {
     let bar = progress_bar(equation_count(), "equations {bar:40} {pos}/{len}");
     let entries = lizard_paper::errata::measure(sample_count, &|| bar.inc(1));

@@ -13,7 +13,8 @@ use crate::shared::number::round_decimals;
 struct Report {
     head: Option<FiveBarSolutions>,
     tail: Option<FiveBarSolutions>,
-    /// The pose with all elbows outward; null if a point is out of reach. An end without a given point is at neutral.
+    /// The pose with all elbows outward; null if a point is out of reach. A head or tail without a given point is at
+    /// neutral.
     pose: Option<Angles>,
     safe: bool,
     why: Vec<String>,
@@ -41,7 +42,7 @@ struct FiveBarSolutions {
 struct ModeSolution {
     left: &'static str,
     right: &'static str,
-    /// Place of the end point relative to the crank tips: `ahead` or `behind`.
+    /// Position of the end point relative to the crank tips: `ahead` or `behind`.
     assembly_mode: &'static str,
     /// Left servo (A1 or A4), degrees, chassis frame.
     theta_left: f64,
@@ -55,7 +56,7 @@ struct ModeSolution {
     why: Vec<String>,
 }
 
-/// Prints the servo angles that put head and tail at these points, mm.
+/// Prints the servo angles that put head and tail at these points (mm).
 ///
 /// # Errors
 /// Fails if a point is out of reach, or if the output cannot be written.
@@ -63,8 +64,8 @@ pub fn print(robot: &Robot, end_points: [Option<Vector>; 2], is_json: bool) -> R
     let [head, tail] = end_points;
     let head = head.map(|point| solve_end(robot, End::Head, point));
     let tail = tail.map(|point| solve_end(robot, End::Tail, point));
-    let report = combine(robot, head, tail);
-    json::print_json_or(is_json, &report, || text(&report))?;
+    let report = combine_ends(robot, head, tail);
+    json::print_json_or_text(is_json, &report, || format_text(&report))?;
     let unreachable = [("head", &report.head), ("tail", &report.tail)]
         .into_iter()
         .find_map(|(name, five_bar)| Some((name, five_bar.as_ref()?.why.as_ref()?)));
@@ -81,7 +82,7 @@ fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
         Ok(inverse_solutions) => {
             let solutions = inverse_solutions
                 .into_iter()
-                .map(|solution| solve_mode(robot, end, local_point, solution));
+                .map(|solution| check_solution(robot, end, local_point, solution));
             (solutions.collect(), None)
         }
         Err(fault) => (Vec::new(), Some(fault.to_string())),
@@ -93,8 +94,8 @@ fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     }
 }
 
-/// Checks an inverse solution: its error, its margin, and the reasons why the robot cannot take it.
-fn solve_mode(
+/// Checks an inverse solution: computes its error and its margin, and lists the robot's limits that it breaks.
+fn check_solution(
     robot: &Robot,
     end: End,
     local_point: Vector,
@@ -123,13 +124,16 @@ fn solve_mode(
             "another assembly mode: the end point would be behind the crank tips".to_string(),
         );
     }
+    if let Err(fault) = &pose {
+        reasons.push(fault.to_string());
+    }
     if let Ok(pose) = &pose {
-        // Behind the crank tips the type-2 margin is negative. The reason above already says so.
-        let is_stated = |check| is_behind && Check::TYPE2.contains(&check);
+        // Behind the crank tips, the type-2 margin is negative. The reason above already states this.
+        let is_already_stated = |check| is_behind && Check::TYPE2.contains(&check);
         let violations = robot.limits().end_violations(end, pose);
         reasons.extend(
             violations
-                .filter(|violation| !is_stated(violation.check))
+                .filter(|violation| !is_already_stated(violation.check))
                 .map(|violation| violation.to_string()),
         );
     }
@@ -153,8 +157,8 @@ fn elbow_text(elbow: Elbow) -> &'static str {
     }
 }
 
-/// Combines the solutions of head and tail, and checks the pose that they give together.
-fn combine(
+/// Combines the solutions of head and tail into one pose, and checks this pose.
+fn combine_ends(
     robot: &Robot,
     head: Option<FiveBarSolutions>,
     tail: Option<FiveBarSolutions>,
@@ -200,7 +204,7 @@ fn combine(
     }
 }
 
-fn text(report: &Report) -> String {
+fn format_text(report: &Report) -> String {
     let mut page = String::new();
     for (name, five_bar, servos) in [
         ("head", &report.head, ["A1 theta1", "A2 theta4"]),
@@ -217,7 +221,7 @@ fn text(report: &Report) -> String {
             page += &format!("  {reason}\n\n");
             continue;
         }
-        // The columns are in servo order, so A3 comes before A4. But the tail's left servo is A4.
+        // The columns are in servo order, A3 before A4. The tail's left servo is A4, so left and right are swapped.
         let is_swapped = name == "tail";
         page += &format!(
             "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",

@@ -12,10 +12,10 @@ use crate::shared::json;
 /// Fails if the output cannot be written.
 pub fn print(lizard: &Lizard, solution: &Solution, is_json: bool) -> Result<(), Failure> {
     let mobilities = measure(lizard, solution);
-    json::print_json_or(is_json, &mobilities, || text(&mobilities))
+    json::print_json_or_text(is_json, &mobilities, || format_text(&mobilities))
 }
 
-fn text(mobilities: &[Mobility]) -> String {
+fn format_text(mobilities: &[Mobility]) -> String {
     let mut page =
         "mechanism         links  joints  Gruebler   Jacobian  rank  freedoms  locked  conditioning\n"
             .to_owned();

@@ -72,8 +72,8 @@ enum Subject {
 /// Computes the pose and prints it.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, a pose that the robot cannot have, an invalid line of the stream, an output that
-/// cannot be written.
+/// Fails for an invalid robot.toml, a pose that the robot cannot reach, an invalid line of the stream, or an output
+/// that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let end_points = [&args.head, &args.tail]

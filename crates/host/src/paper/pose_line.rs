@@ -9,8 +9,8 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use crate::paper::poses::TimedPose;
 use crate::shared::number::round_decimals;
 
-/// One object of `lizard pose --json`. Without a solution, the fields that need it are null. `seconds` is present
-/// only if the stream has that column.
+/// One object of `lizard pose --json`. If the pose has no solution, the fields of the solution are null. `seconds` is
+/// present only if the stream has this column.
 #[derive(Default, serde::Serialize)]
 pub struct PoseLine {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -156,7 +156,7 @@ pub fn format_row(
         Ok(solution) => solution,
     };
     let (head, tail) = (solution.head_point(), solution.tail_point());
-    let (check, value) = solution.margins.min();
+    let (least_check, least_margin) = solution.margins.min();
     for block in [
         [
             solution.theta2(),
@@ -173,10 +173,10 @@ pub fn format_row(
     }
     let _ = write!(
         line,
-        " | {:+7.2} {:+7.2} | {check:9} {:+7.4} | ",
+        " | {:+7.2} {:+7.2} | {least_check:9} {:+7.4} | ",
         round_decimals(solution.left.s, 2),
         round_decimals(solution.right.s, 2),
-        round_decimals(value, 4),
+        round_decimals(least_margin, 4),
     );
     match verdict::refusal_reasons(robot, solution).first() {
         None => line.push_str("safe"),
@@ -251,8 +251,11 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
     );
     let reasons = verdict::refusal_reasons(robot, solution);
     if reasons.is_empty() {
-        let (check, value) = margins.min();
-        let _ = writeln!(page, "safe     yes, the least margin is {check} {value:.4}");
+        let (least_check, least_margin) = margins.min();
+        let _ = writeln!(
+            page,
+            "safe     yes, the least margin is {least_check} {least_margin:.4}"
+        );
     } else {
         for (i, reason) in reasons.iter().enumerate() {
             let prefix = if i == 0 {

@@ -1,5 +1,5 @@
-//! A stream of poses as comma-separated values. Only one line is in memory at a time, so
-//! the length of a file does not matter.
+//! A stream of poses as comma-separated values. Only one line is in memory at a time, so the length of the stream is
+//! not limited.
 
 use std::io::{BufRead, Read};
 
@@ -43,7 +43,7 @@ const DEFAULT_COLUMNS: [Column; 4] = [
     Column::Angle(3),
 ];
 
-/// Largest length of a line, bytes. A longer line is not a pose, and is not read to its end.
+/// Largest length of a line, bytes. A longer line is refused without reading it completely.
 const MAX_LINE_BYTES: u64 = 1024;
 
 /// A pose of the stream, with its time.
@@ -58,17 +58,17 @@ pub struct TimedPose {
 /// Iterator over the poses of a CSV text. The first line may be a header that names the columns, in any order. Without
 /// a header the columns are A1, A2, A3, A4. Lines end in LF or CRLF. Blank lines and a byte order mark are ignored.
 /// Names and numbers may be in double quotes.
-pub struct Poses<R> {
+pub struct PoseReader<R> {
     input: R,
     line_bytes: Vec<u8>,
     line_number: usize,
     /// The column of each field of a line.
     columns: Vec<Column>,
-    /// True if the first line is a pose that was read in search of a header and has not yet been returned.
+    /// True if the first line was read, is a pose instead of a header, and has not yet been returned.
     has_pending_line: bool,
 }
 
-impl<R: BufRead> Poses<R> {
+impl<R: BufRead> PoseReader<R> {
     /// Creates the iterator and reads the header, if there is one.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl<R: BufRead> Poses<R> {
             has_pending_line: false,
         };
         let expected = ANGLE_NAMES.join(",");
-        if !poses.advance()? {
+        if !poses.read_next_line()? {
             return Err(Failure::Input(format!(
                 "line 1, column 1: the input is empty, expected the header {expected}"
             )));
@@ -131,17 +131,17 @@ impl<R: BufRead> Poses<R> {
     }
 
     /// Reads the next line that is not blank. Returns false at the end of the input.
-    fn advance(&mut self) -> Result<bool, Failure> {
+    fn read_next_line(&mut self) -> Result<bool, Failure> {
         loop {
             self.line_bytes.clear();
             let byte_count = (&mut self.input)
-                .take(MAX_LINE_BYTES)
+                .take(MAX_LINE_BYTES + 1)
                 .read_until(b'\n', &mut self.line_bytes)?;
             if byte_count == 0 {
                 return Ok(false);
             }
             self.line_number += 1;
-            if byte_count as u64 == MAX_LINE_BYTES && !self.line_bytes.ends_with(b"\n") {
+            if byte_count as u64 > MAX_LINE_BYTES && !self.line_bytes.ends_with(b"\n") {
                 return Err(Failure::Input(format!(
                     "line {}, column 1: longer than {MAX_LINE_BYTES} bytes",
                     self.line_number
@@ -223,14 +223,14 @@ impl<R: BufRead> Poses<R> {
     }
 }
 
-impl<R: BufRead> Iterator for Poses<R> {
+impl<R: BufRead> Iterator for PoseReader<R> {
     type Item = Result<TimedPose, Failure>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if std::mem::take(&mut self.has_pending_line) {
             return Some(self.parse_line());
         }
-        match self.advance() {
+        match self.read_next_line() {
             Ok(true) => Some(self.parse_line()),
             Ok(false) => None,
             Err(failure) => Some(Err(failure)),

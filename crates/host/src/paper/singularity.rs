@@ -49,7 +49,7 @@ impl Matrix {
         }
     }
 
-    fn text(&self) -> String {
+    fn to_text(&self) -> String {
         let mut text = format!("{:9}", "");
         for column in self.columns {
             text += &format!(" {column:>9}");
@@ -57,7 +57,7 @@ impl Matrix {
         for (name, row) in self.rows.iter().zip(&self.values) {
             text += &format!("\n  {name:7}");
             for value in row {
-                // Values of the size of rounding errors are printed as a point.
+                // Rounding errors are printed as a point.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
                     false => format!(" {:9.2}", round_decimals(*value, 2)),
@@ -110,7 +110,7 @@ struct NearestSingularity {
 /// Fails for an output that cannot be written.
 pub fn print(robot: &Robot, solution: &Solution, is_json: bool) -> Result<(), Failure> {
     let report = compute_report(robot, solution);
-    json::print_json_or(is_json, &report, || text(&report))
+    json::print_json_or_text(is_json, &report, || format_text(&report))
 }
 
 fn compute_report(robot: &Robot, solution: &Solution) -> Report {
@@ -183,9 +183,9 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     }
 }
 
-/// Returns the singular pose of one kind whose crank angles are nearest to `angles`, with its distance in degrees;
-/// `None` if there is no such pose. Scans the singularity curves over all left crank angles, then refines the step
-/// around the nearest pose.
+/// Returns the singular pose of this kind whose crank angles are nearest to `angles`, and its distance in degrees;
+/// `None` if there is no such pose. Scans the singularity curves over all left crank angles, then repeats the scan
+/// around the nearest pose with smaller steps.
 pub fn nearest_singularity(
     bars: &FiveBar,
     kind: Singularity,
@@ -224,7 +224,7 @@ pub fn nearest_singularity(
         .reduce(closer_of)
 }
 
-fn text(report: &Report) -> String {
+fn format_text(report: &Report) -> String {
     let blocks = &report.blocks;
     let mut page = format!(
         "K: rows are the loop equations, columns the servos' angles (mm per radian)\n{}\n\
@@ -236,8 +236,8 @@ fn text(report: &Report) -> String {
          \x20 left   -d                          {:+10.2} mm\n\
          \x20 right  -d                          {:+10.2} mm\n\
          legs, lg12 lg13 sin(theta_lg12 - theta_lg13), A1 to A4: {}\n\n",
-        report.k.text(),
-        report.k_star.text(),
+        report.k.to_text(),
+        report.k_star.to_text(),
         report.determinant,
         report.factored,
         round_decimals(blocks.head, 2),

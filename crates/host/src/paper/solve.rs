@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::Failure;
 use crate::paper::pose_line::{self, PoseLine};
-use crate::paper::poses::{Poses, TimedPose};
+use crate::paper::poses::{PoseReader, TimedPose};
 
 /// Number of poses that are solved together; it limits the memory.
 const BATCH_SIZE: usize = 8192;
@@ -51,7 +51,7 @@ fn solve_one(robot: &Robot, pose: &Pose, is_json: bool) -> Result<Vec<u8>, Failu
 /// Solves the poses of standard input in batches on all cores, and writes them in order. One batch is written while
 /// the next is solved. The poses before a malformed line are still solved and written.
 fn solve_stream(robot: &Robot, is_json: bool) -> Result<(), Failure> {
-    let mut poses = Poses::new(io::stdin().lock())?;
+    let mut poses = PoseReader::new(io::stdin().lock())?;
     let (sender, receiver) = mpsc::sync_channel::<Vec<u8>>(MAX_WAITING_BLOCKS);
     thread::scope(|scope| {
         let heading = (!is_json).then(|| pose_line::table_heading(poses.has_time()));
@@ -81,7 +81,7 @@ fn write_blocks(blocks: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Res
 fn solve_all(
     robot: &Robot,
     is_json: bool,
-    poses: &mut Poses<impl BufRead>,
+    poses: &mut PoseReader<impl BufRead>,
     sender: &mpsc::SyncSender<Vec<u8>>,
 ) -> Result<(), Failure> {
     let mut batch = Vec::with_capacity(BATCH_SIZE);

@@ -11,8 +11,7 @@ use crate::shared::pose_args::Quantity;
 /// Longest time step of the finite differences, s.
 const MAX_STEP_S: f64 = 2e-4;
 
-/// Largest turn of a servo in one step of the finite differences, deg. With larger turns the differences would be
-/// inaccurate.
+/// Largest turn of a servo in one step of the finite differences, deg. Larger turns make the differences inaccurate.
 const MAX_STEP_TURN_DEG: f64 = 0.04;
 
 #[derive(clap::Args)]
@@ -82,11 +81,11 @@ pub fn print(
             "the couplers line up: rates do not follow from the servos'".to_string(),
         ));
     }
-    let rows = rows(lizard, solution, drive);
-    json::print_json_or(is_json, &rows, || text(&rows))
+    let rows = compute_rows(lizard, solution, drive);
+    json::print_json_or_text(is_json, &rows, || format_text(&rows))
 }
 
-fn text(rows: &[Row]) -> String {
+fn format_text(rows: &[Row]) -> String {
     let mut page =
         "joint        value          rate 1/s   acceleration 1/s^2   against finite differences\n"
             .to_owned();
@@ -114,7 +113,7 @@ fn text(rows: &[Row]) -> String {
 }
 
 /// Name, unit and value of each joint and coordinate.
-fn values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
+fn joint_values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
     let (head, tail) = (solution.head_point(), solution.tail_point());
     [
         ("theta2", "deg", solution.theta2()),
@@ -133,7 +132,7 @@ fn values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
 }
 
 /// Rate and acceleration of each joint and coordinate, in the order of [`values`].
-fn rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
+fn joint_rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
     let rate_and_acceleration =
         |derivative: lizard_kinematics::Derivative<f64>| (derivative.rate, derivative.acceleration);
     [
@@ -152,15 +151,15 @@ fn rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
     ]
 }
 
-/// Rates and accelerations in closed form, compared with finite differences of the poses around this one.
-fn rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Vec<Row> {
+/// Computes rates and accelerations in closed form, and compares them with finite differences of neighbouring poses.
+fn compute_rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Vec<Row> {
     let start_angles = <[f64; 4]>::from(solution.pose);
     let largest_magnitude = |values: &[f64; 4]| {
         values
             .iter()
             .fold(0.0f64, |max, value| max.max(value.abs()))
     };
-    // If the servos stand still, the quotients are infinite, so they do not limit the step.
+    // If the servos stand still, the quotients are infinite and do not limit the step.
     let step_s = MAX_STEP_S
         .min(MAX_STEP_TURN_DEG / largest_magnitude(&drive.rate))
         .min((MAX_STEP_TURN_DEG / largest_magnitude(&drive.acceleration)).sqrt());
@@ -172,14 +171,14 @@ fn rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Vec<Row> {
         lizard
             .solve(&Pose::from(angles))
             .ok()
-            .map(|solution| values(&solution))
+            .map(|solution| joint_values(&solution))
     };
     let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(values_at) {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
-    let rates_and_accelerations = rates(&solution.derivatives(drive));
-    values(solution)
+    let rates_and_accelerations = joint_rates(&solution.derivatives(drive));
+    joint_values(solution)
         .into_iter()
         .zip(rates_and_accelerations)
         .enumerate()

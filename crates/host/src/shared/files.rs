@@ -1,12 +1,12 @@
 //! Reading and writing the files of all commands.
 //!
-//! A program that is killed while it writes leaves half a file. Half an image or half a calibration is worse than
-//! none. So the bytes are written to a file without a name, or to a temporary file if the file system has no nameless
-//! files. This file gets its final name when it is complete.
+//! A program that is killed during a write leaves an incomplete file. An incomplete image or calibration is worse than
+//! a missing file. So the bytes are first written to a file without a name, or to a temporary file if the file system
+//! does not support nameless files. The file gets its final name when it is complete.
 //!
-//! An output replaces only an ordinary file, because every program of the machine needs devices such as /dev/null. An
-//! output does not replace a robot's description or an input of the same command either: both are somebody's work, and
-//! a wrong name is easily typed.
+//! An output replaces only an ordinary file, because other programs need devices such as /dev/null. An output does not
+//! replace a robot's description or an input of the same command either: a mistyped name must not destroy a user's
+//! work.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -18,7 +18,7 @@ use crate::Failure;
 /// The files that this command has read.
 static INPUT_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Notes a file that is about to be read, so that no output replaces it.
+/// Records a file that is about to be read, so that no output replaces it.
 pub fn note_input(path: &Path) -> &Path {
     let mut inputs = INPUT_FILES.lock().unwrap_or_else(PoisonError::into_inner);
     inputs.push(path.to_owned());
@@ -28,7 +28,7 @@ pub fn note_input(path: &Path) -> &Path {
 /// Reads the text of an input.
 ///
 /// # Errors
-/// Fails if the file cannot be read, is not text, or is longer than 256 MiB; an endless device is longer, for example.
+/// Fails if the file cannot be read, is not text, or is longer than 256 MiB, for example an endless device.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
@@ -42,7 +42,7 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// Checks that an output replaces neither an input nor a robot's description.
+/// Checks that an output may be written to this path.
 ///
 /// # Errors
 /// Fails if the output would replace an input or a robot's description.
@@ -79,11 +79,11 @@ fn is_robot_file(path: &Path) -> bool {
 }
 
 /// Writes a file completely or not at all, and creates missing folders. Replaces an existing file, also through a
-/// symbolic link, and keeps its permissions. Writes the bytes directly to a stream, such as /dev/stdout or a pipe.
+/// symbolic link, and keeps its permissions. Writes directly to a stream, such as /dev/stdout or a pipe.
 ///
 /// # Errors
-/// Fails if the folder cannot be created or written to; if something at this path is neither an ordinary file nor a
-/// stream, such as a folder; or if the file is an input or a robot ([`check_replaceable`]).
+/// Fails if the folder cannot be created or written to, if the path names neither an ordinary file nor a stream (for
+/// example, a folder), or if the file is an input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
     let outcome = if is_stream(path) {
@@ -93,7 +93,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
             .open(path)
             .and_then(|mut stream| stream.write_all(bytes))
     } else {
-        create_parent_folders(path).and_then(|()| persist(path, bytes))
+        create_parent_folders(path).and_then(|()| write_atomically(path, bytes))
     };
     outcome.map_err(|error| write_failure(path, &error))
 }
@@ -101,7 +101,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// The failure for a path that cannot be written.
 pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     let reason = error.to_string();
-    // tempfile adds the name of the temporary file, which means nothing to a user.
+    // tempfile appends the path of the temporary file, which the user does not know.
     let reason = reason
         .split_once(" at path ")
         .map_or(reason.as_str(), |(reason, _)| reason);
@@ -131,7 +131,7 @@ fn is_stream(_: &Path) -> bool {
 }
 
 /// Follows the symbolic links of a path. Returns the path of the file itself, and its permissions if it exists.
-fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
+fn resolve_links(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     match path.metadata() {
         Ok(metadata) if metadata.is_file() => {
             Ok((path.canonicalize()?, Some(metadata.permissions())))
@@ -146,8 +146,8 @@ fn resolve(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
 }
 
 /// Writes the bytes to a nameless or temporary file in the same folder, and then gives that file its final path.
-fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let (path, permissions) = resolve(path)?;
+fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (path, permissions) = resolve_links(path)?;
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -186,8 +186,8 @@ fn persist(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Creates a file without a name in this folder, which vanishes if the program is killed; `None` if the file system
-/// does not support such files.
+/// Creates a file without a name in this folder. The file disappears if the program is killed. Returns `None` if the
+/// file system does not support such files.
 #[cfg(target_os = "linux")]
 fn create_nameless(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
@@ -210,7 +210,7 @@ fn link_to_name(file: &File, name: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn error_text(path: &Path) -> String {
+    fn write_error_text(path: &Path) -> String {
         write(path, b"x")
             .expect_err("it is not written")
             .to_string()
@@ -247,7 +247,7 @@ mod tests {
             ),
         ] {
             let old_bytes = fs::read(path).expect("it is there");
-            let message = error_text(path);
+            let message = write_error_text(path);
             assert!(message.contains(reason), "{message}");
             assert_eq!(fs::read(path).expect("it is there"), old_bytes);
         }
@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_file_that_cannot_be_written_is_named() {
         assert_eq!(
-            error_text(Path::new("/dev/null/folder/a.toml")),
+            write_error_text(Path::new("/dev/null/folder/a.toml")),
             "cannot write /dev/null/folder/a.toml: Not a directory (os error 20)"
         );
     }
@@ -268,7 +268,8 @@ mod tests {
         let inner_folder = folder.path().join("inner");
         fs::create_dir(&inner_folder).expect("a folder in it");
         assert!(
-            error_text(&inner_folder).ends_with("it already exists and is not an ordinary file")
+            write_error_text(&inner_folder)
+                .ends_with("it already exists and is not an ordinary file")
         );
         assert!(inner_folder.is_dir());
     }
@@ -289,7 +290,9 @@ mod tests {
         let mode = file.metadata().expect("it is there").permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
         symlink("nothing", &broken_link).expect("a link");
-        assert!(error_text(&broken_link).ends_with("astray: it is a link that leads nowhere"));
+        assert!(
+            write_error_text(&broken_link).ends_with("astray: it is a link that leads nowhere")
+        );
         assert!(broken_link.is_symlink());
     }
 
@@ -297,7 +300,7 @@ mod tests {
     #[cfg(unix)]
     fn a_stream_gets_the_bytes_and_stays() {
         let folder = tempfile::tempdir().expect("a folder");
-        // A link, so that a bug here would not harm the machine.
+        // The test uses a link, so that a bug replaces the link and not the device.
         let device = folder.path().join("device");
         std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
         write(&device, b"<svg/>").expect("it takes everything");
@@ -307,7 +310,7 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn in_a_read_only_folder_the_error_names_only_the_file() {
-        let message = error_text(Path::new("/proc/self/a.toml"));
+        let message = write_error_text(Path::new("/proc/self/a.toml"));
         assert!(
             message.starts_with("cannot write /proc/self/a.toml: "),
             "{message}"

@@ -27,7 +27,7 @@ pub const PANEL_COLOUR: &str = "#f7f7f7";
 /// The fonts, in order of preference.
 const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
-/// The part of a text that lies at the text's point.
+/// The part of a text that is at the given point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
     /// The text begins at the point.
@@ -38,7 +38,7 @@ pub enum Anchor {
     End,
 }
 
-/// A line of text. `point` lies on its base line, at the part that `anchor` names.
+/// A line of text. `point` is on the text's baseline, at the part that `anchor` names.
 pub fn text(content: &str, point: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
     let anchor = match anchor {
         Anchor::Start => "start",
@@ -87,7 +87,7 @@ pub fn svg_page(size: (f64, f64), group: Group) -> String {
         .to_string()
 }
 
-/// A diagonal cross, as the letter x.
+/// A diagonal cross, like the letter x.
 pub fn cross(centre: (f64, f64), arm_length: f64, colour: &str, width: f64) -> Group {
     let (x, y) = centre;
     Group::new()
@@ -158,16 +158,16 @@ pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
         .set("stroke-linecap", "round")
 }
 
-/// Rounds to hundredths of a pixel, which keeps files small and equal on all machines.
+/// Rounds to hundredths of a pixel, so that files are small and identical on all machines.
 pub fn round_hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// The name that an Arduino board shows at a pin: D9 for pin number 9, A0 for 14.
-pub fn pin_name(number: u8) -> String {
+/// The name that is printed on an Arduino board beside a pin: D9 for pin 9, A0 for pin 14.
+pub fn pin_name(pin_number: u8) -> String {
     const A0: u8 = 14;
-    match number.checked_sub(A0) {
+    match pin_number.checked_sub(A0) {
         Some(index) => format!("A{index}"),
-        None => format!("D{number}"),
+        None => format!("D{pin_number}"),
     }
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
-pub fn print_json_or(
+pub fn print_json_or_text(
     is_json: bool,
     value: &impl Serialize,
     text_of: impl FnOnce() -> String,

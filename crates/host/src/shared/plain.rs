@@ -1,9 +1,9 @@
 //! Makes text from files and boards safe for a terminal.
 //!
 //! A terminal executes escape sequences. An escape sequence in the name of a robot or in a recorded line could move the
-//! cursor, change the window's title or hide text. So control characters from a file or a board are spelled out.
+//! cursor, change the window's title or hide text. So control characters from a file or a board are escaped.
 
-/// Returns the text with every control character as an escape of Rust, such as `\u{1b}`.
+/// Returns the text with every control character as a Rust escape, such as `\u{1b}`.
 pub fn escape_controls(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     for character in text.chars() {
@@ -26,7 +26,7 @@ pub fn readable_lines(text: &str) -> String {
     lines.join("\n")
 }
 
-/// Replaces the middle of a very long line by the number of omitted characters.
+/// Replaces the middle of a very long line with the number of omitted characters.
 fn shorten(line: &str) -> String {
     const SIDE_LENGTH: usize = 300;
     let char_count = line.chars().count();

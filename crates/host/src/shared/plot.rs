@@ -9,14 +9,13 @@ use crate::shared::ink::{
     DARK, GRID_COLOUR, curve, line, outlined, rectangle, text_end, text_middle, text_start,
 };
 
-/// Viridis in ten bands of evenly increasing lightness, which are legible in grey print and with every kind of colour
-/// vision.
+/// Viridis in ten bands whose lightness increases evenly. They are legible in grey print and for colour-blind people.
 pub const VIRIDIS: &[&str] = &[
     "#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58",
     "#b5de2b", "#fde725",
 ];
 
-/// Light blues, for maps under coloured lines.
+/// Light blues, for maps with coloured lines on top.
 pub const BLUES: &[&str] = &[
     "#f7fbff", "#e3eef8", "#d0e1f2", "#b7d4ea", "#9ac7e0", "#7fb8da", "#65a9d2",
 ];
@@ -24,7 +23,7 @@ pub const BLUES: &[&str] = &[
 /// The colour of impossible regions.
 pub const IMPOSSIBLE_COLOUR: &str = "#d4d0cb";
 
-/// A rectangle of the page with a coordinate system.
+/// A rectangle on the page with its own coordinate system.
 #[derive(Clone, Copy)]
 pub struct Plot {
     /// Upper left corner on the page.
@@ -53,7 +52,7 @@ impl<'a> Axis<'a> {
 }
 
 impl Plot {
-    /// The position of a point on the page.
+    /// The position on the page of a point in the plot's coordinates.
     pub fn page_point(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x_range.0) / (self.x_range.1 - self.x_range.0),
@@ -72,8 +71,8 @@ impl Plot {
     }
 
     /// Adds a grid in the background.
-    pub fn draw_grid(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
-        for value in ticks(self.x_range, x.tick_step) {
+    pub fn draw_grid(&self, mut group: Group, x_axis: &Axis, y_axis: &Axis) -> Group {
+        for value in ticks(self.x_range, x_axis.tick_step) {
             let page_x = self.page_point(value, 0.0).0;
             group = group.add(line(
                 (page_x, self.corner.1),
@@ -82,7 +81,7 @@ impl Plot {
                 1.0,
             ));
         }
-        for value in ticks(self.y_range, y.tick_step) {
+        for value in ticks(self.y_range, y_axis.tick_step) {
             let page_y = self.page_point(0.0, value).1;
             group = group.add(line(
                 (self.corner.0, page_y),
@@ -94,25 +93,25 @@ impl Plot {
         group
     }
 
-    /// Adds frame, ticks, numbers and names.
-    pub fn draw_axes(&self, mut group: Group, x: &Axis, y: &Axis) -> Group {
+    /// Adds the frame, and the ticks, numbers and names of both axes.
+    pub fn draw_axes(&self, mut group: Group, x_axis: &Axis, y_axis: &Axis) -> Group {
         let (right, bottom) = self.lower_right_corner();
         group = group.add(outlined(
             rectangle(self.corner, self.size, "none"),
             DARK,
             1.0,
         ));
-        for value in ticks(self.x_range, x.tick_step) {
+        for value in ticks(self.x_range, x_axis.tick_step) {
             let page_x = self.page_point(value, 0.0).0;
             group = group
                 .add(line((page_x, bottom), (page_x, bottom + 6.0), DARK, 1.0))
                 .add(text_middle(
-                    &format_tick(value, x.tick_step),
+                    &format_tick(value, x_axis.tick_step),
                     (page_x, bottom + 23.0),
                     15.0,
                 ));
         }
-        for value in ticks(self.y_range, y.tick_step) {
+        for value in ticks(self.y_range, y_axis.tick_step) {
             let page_y = self.page_point(0.0, value).1;
             group = group
                 .add(line(
@@ -122,29 +121,29 @@ impl Plot {
                     1.0,
                 ))
                 .add(text_end(
-                    &format_tick(value, y.tick_step),
+                    &format_tick(value, y_axis.tick_step),
                     (self.corner.0 - 10.0, page_y + 5.0),
                     15.0,
                 ));
         }
         let x_name_point = ((self.corner.0 + right) / 2.0, bottom + 50.0);
         let y_name_point = (self.corner.0 - 58.0, (self.corner.1 + bottom) / 2.0);
-        group.add(text_middle(x.name, x_name_point, 17.0)).add(
-            text_middle(y.name, y_name_point, 17.0).set(
+        group.add(text_middle(x_axis.name, x_name_point, 17.0)).add(
+            text_middle(y_axis.name, y_name_point, 17.0).set(
                 "transform",
                 format!("rotate(-90 {} {})", y_name_point.0, y_name_point.1),
             ),
         )
     }
 
-    /// Adds a map of cells in bands of colour. `cell_counts` are the numbers of columns and rows. `colour` returns the
-    /// colour at the middle of a cell, or `None` for an empty cell. Each colour is one path. Neighbours of equal colour
-    /// in a row become one rectangle.
+    /// Adds a map of coloured cells. `cell_counts` are the numbers of columns and rows. `colour_at` returns the colour
+    /// at the middle of a cell, or `None` for an empty cell. Each colour is one path. Neighbours of equal colour in a
+    /// row become one rectangle.
     pub fn draw_map(
         &self,
         mut group: Group,
         cell_counts: (usize, usize),
-        colour: impl Fn(f64, f64) -> Option<&'static str>,
+        colour_at: impl Fn(f64, f64) -> Option<&'static str>,
     ) -> Group {
         let width = (self.x_range.1 - self.x_range.0) / cell_counts.0 as f64;
         let height = (self.y_range.1 - self.y_range.0) / cell_counts.1 as f64;
@@ -152,7 +151,8 @@ impl Plot {
         for row in 0..cell_counts.1 {
             let y = self.y_range.0 + row as f64 * height;
             let left_of = |column: usize| self.x_range.0 + column as f64 * width;
-            let colour_of = |column: usize| colour(left_of(column) + width / 2.0, y + height / 2.0);
+            let colour_of =
+                |column: usize| colour_at(left_of(column) + width / 2.0, y + height / 2.0);
             let mut first_column = 0;
             let mut fill = colour_of(0);
             for column in 1..=cell_counts.0 {
@@ -183,14 +183,14 @@ impl Plot {
         group
     }
 
-    /// A line through points.
+    /// An open curve through points in the plot's coordinates.
     pub fn curve(&self, points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
         let points: Vec<_> = points.iter().map(|&(x, y)| self.page_point(x, y)).collect();
         curve(&points, colour, width)
     }
 }
 
-/// Multiples of a step within a range.
+/// The multiples of a step within a range.
 fn ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
     let first = (range.0 / step - 1e-9).ceil() as i64;
     let last = (range.1 / step + 1e-9).floor() as i64;
@@ -199,10 +199,10 @@ fn ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
 
 /// A tick's number, with as many digits as the step needs.
 fn format_tick(value: f64, step: f64) -> String {
-    let digits = (0..4)
+    let decimals = (0..4)
         .find(|&digits| (step * 10f64.powi(digits)).fract().abs() < 1e-9)
         .unwrap_or(4);
-    format!("{:.1$}", value + 0.0, digits as usize)
+    format!("{:.1$}", value + 0.0, decimals as usize)
 }
 
 /// A scale of colours for a quantity.
@@ -219,7 +219,7 @@ impl ColourScale {
     /// The colour of a value; a value outside the range gets the nearest band.
     pub fn colour(&self, value: f64) -> &'static str {
         let fraction = (value - self.min) / (self.max - self.min);
-        // A value on the limit of two bands belongs to the upper band, despite rounding.
+        // The small addend puts a value between two bands into the upper band, despite rounding.
         let band_index = (fraction * self.colours.len() as f64 + 1e-9).max(0.0) as usize;
         self.colours[band_index.min(self.colours.len() - 1)]
     }
@@ -231,19 +231,19 @@ impl ColourScale {
         corner: (f64, f64),
         height: f64,
         name: &str,
-        digits: usize,
+        decimals: usize,
     ) -> Group {
-        let count = self.colours.len();
-        let band_height = height / count as f64;
+        let band_count = self.colours.len();
+        let band_height = height / band_count as f64;
         for (i, colour) in self.colours.iter().enumerate() {
             let top = corner.1 + height - (i + 1) as f64 * band_height;
             group = group.add(rectangle((corner.0, top), (22.0, band_height), colour));
         }
-        for i in 0..=count {
-            let value = self.min + (self.max - self.min) * i as f64 / count as f64;
+        for i in 0..=band_count {
+            let value = self.min + (self.max - self.min) * i as f64 / band_count as f64;
             let top = corner.1 + height - i as f64 * band_height;
             group = group.add(text_start(
-                &format!("{value:.digits$}"),
+                &format!("{value:.decimals$}"),
                 (corner.0 + 30.0, top + 5.0),
                 14.0,
             ));

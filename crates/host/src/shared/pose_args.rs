@@ -1,5 +1,5 @@
-//! The options for a pose, and the bounds of quantities on the command line. Beyond these bounds a double has too few
-//! digits for the result.
+//! The options for a pose, and the bounds of quantities on the command line. Beyond these bounds, an f64 has too few
+//! digits for an exact result.
 
 use std::fmt;
 
@@ -16,7 +16,7 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// An angle, degrees; the bound is some thousand turns.
+    /// An angle, degrees; the bound is about 2800 turns.
     pub const ANGLE: Self = Self::up_to(1e6, "degrees");
     /// A speed of a servo, deg/s.
     pub const RATE: Self = Self::up_to(1e6, "deg/s");
@@ -33,12 +33,12 @@ impl Quantity {
         Self { max, unit }
     }
 
-    /// A parser of this quantity for clap.
+    /// Returns a parser of this quantity for clap.
     pub fn parser(self) -> impl Fn(&str) -> Result<f64, String> + Clone {
         move |text| self.parse(text).map_err(|fault| format!("it {fault}"))
     }
 
-    /// Parses a number within the bounds.
+    /// Parses a number and checks its bounds.
     ///
     /// # Errors
     /// Fails if the text is not a number, or if the number is out of bounds; NaN and infinity are out of bounds.
@@ -52,12 +52,12 @@ impl Quantity {
     }
 }
 
-/// The reason why a typed number is refused. Its text continues a sentence about the number.
+/// The reason why a typed number is refused. The message is the end of a sentence that begins with the number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NumberFault {
     /// The text is not a number.
     NotANumber,
-    /// The number is infinite, NaN, or too large for a double.
+    /// The number is infinite, NaN, or too large for an f64.
     NotFinite,
     /// The number is larger than its quantity may be.
     OutOfRange(Quantity),
@@ -77,7 +77,7 @@ impl fmt::Display for NumberFault {
 
 impl std::error::Error for NumberFault {}
 
-/// `--theta1` and its three companions.
+/// The options `--theta1`, `--theta4`, `--theta8` and `--theta5`.
 #[derive(clap::Args, Debug, Default)]
 #[command(allow_negative_numbers = true)]
 pub struct PoseArgs {
@@ -100,7 +100,7 @@ pub struct PoseArgs {
 }
 
 impl PoseArgs {
-    /// The pose of the options; `None` if none of them is given. clap checks that the pose is complete.
+    /// The pose of the options; `None` without options. clap accepts only all four options or none.
     pub fn to_pose(&self) -> Option<Pose> {
         Some(Pose {
             theta1: self.theta1?,

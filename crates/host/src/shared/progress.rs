@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar of this length, drawn by a template of indicatif.
+/// Creates a progress bar for `length` steps from an indicatif template.
 ///
 /// # Panics
 /// Panics if the template is not well formed.
@@ -13,11 +13,11 @@ pub fn progress_bar(length: usize, template: &str) -> ProgressBar {
     ProgressBar::new(length as u64).with_style(style)
 }
 
-/// A display of the elapsed time, for a computation without steps. Dropping it removes the display.
+/// A display of the elapsed time, for a computation without steps. The display disappears when the value is dropped.
 pub struct Spinner(ProgressBar);
 
 impl Spinner {
-    /// Starts to show the time, after this message.
+    /// Starts to show this message, followed by the elapsed time.
     pub fn new(message: &'static str) -> Self {
         let spinner = progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(message);
         spinner.enable_steady_tick(Duration::from_millis(100));

@@ -7,7 +7,7 @@ use lizard_robot::Robot;
 use crate::Failure;
 use crate::shared::files::{self, note_input};
 
-/// The text of the source tree's robot.toml, for use if no robot.toml is found.
+/// The text of the source tree's robot.toml, which is used if no robot.toml is found.
 pub(crate) const DEFAULT_ROBOT: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.

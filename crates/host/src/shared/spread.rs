@@ -1,10 +1,10 @@
 //! Long computations spread over machines.
 //!
 //! `lizard prove --part 2/8` computes one of eight parts and prints its results as one line. `lizard merge` reads all
-//! eight lines and prints the same bytes as a single machine would. This holds by construction: a computation is a
-//! list of pieces that do not depend on each other. A single machine computes all pieces, a part computes its own
-//! pieces, and a merge runs the same program with the pieces that it has read. A part's line contains the version, the
-//! options and the robot, so that parts of different computations cannot be mixed.
+//! eight lines and prints the same bytes as a single machine would. The bytes are the same because a computation is a
+//! list of independent pieces. A single machine computes all pieces, a part computes its own pieces, and a merge runs
+//! the same program on the pieces that it has read. A part's line contains the version, the options and the robot, so
+//! that parts of different computations cannot be mixed.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -26,7 +26,7 @@ const MAX_PARTS: u32 = 1_000_000;
 pub struct Part {
     /// The number of this part, from 1.
     pub(crate) number: u32,
-    /// The number of all parts.
+    /// The total number of parts.
     pub(crate) part_count: u32,
 }
 
@@ -63,13 +63,13 @@ impl From<Part> for String {
 }
 
 impl Part {
-    /// True if a piece belongs to this part. Neighbouring pieces belong to different parts, because the neighbours of a
-    /// slow piece are often slow, too.
+    /// True if a piece belongs to this part. Neighbouring pieces belong to different parts, because slow pieces are
+    /// often neighbours.
     fn has_piece(self, piece: usize) -> bool {
         piece % self.part_count as usize == self.number as usize - 1
     }
 
-    /// The number of this part's pieces, of `total_count` pieces.
+    /// The number of this part's pieces, if all parts have `total_count` pieces.
     pub fn piece_count(self, total_count: usize) -> usize {
         (0..total_count)
             .filter(|piece| self.has_piece(*piece))
@@ -80,7 +80,7 @@ impl Part {
     ///
     /// # Errors
     /// Fails if the robot cannot be read, or the output cannot be written.
-    pub fn print<C: Spreads, T: Serialize>(
+    pub fn print<C: Spreadable, T: Serialize>(
         self,
         command: &C,
         robot: &RobotFile,
@@ -105,7 +105,7 @@ impl Part {
     }
 }
 
-/// The robot of a computation that can be spread, and `--part`.
+/// The options `--robot` and `--part` of a computation that can be spread over machines.
 #[derive(clap::Args, Debug, Default)]
 pub struct SpreadArgs {
     #[command(flatten)]
@@ -118,13 +118,13 @@ pub struct SpreadArgs {
     merged: Option<BTreeMap<usize, Value>>,
 }
 
-/// A command that can be spread. Its serialized form contains all options except the robot.
-pub trait Spreads: Serialize + DeserializeOwned {
+/// A command that can be spread over machines. Its serialized form contains all options except the robot.
+pub trait Spreadable: Serialize + DeserializeOwned {
     /// The command's name.
     const COMMAND: &'static str;
 
-    /// The command's robot and `--part`.
-    fn spread(&mut self) -> &mut SpreadArgs;
+    /// The options `--robot` and `--part` of this command.
+    fn spread_args(&mut self) -> &mut SpreadArgs;
 }
 
 /// The output of one part.
@@ -156,7 +156,7 @@ impl SpreadArgs {
         self.part
     }
 
-    /// Returns the pieces of all parts in order, in a merge; `None` if this is not a merge.
+    /// In a merge, returns the pieces of all parts in order; otherwise `None`.
     ///
     /// # Errors
     /// Fails if the parts belong to another computation.
@@ -180,14 +180,14 @@ impl SpreadArgs {
         pieces.map(Some).map_err(|_| wrong_parts_failure())
     }
 
-    /// Returns all pieces in order: computed from their indices by `compute_piece`, or in a merge read from the parts.
-    /// With `--part`, prints the pieces of that part and returns `None`.
+    /// Returns all pieces in order. `compute_piece` computes a piece from its index; in a merge, the pieces are read
+    /// from the parts. With `--part`, prints the pieces of that part and returns `None`.
     ///
     /// # Errors
     /// Fails if the output cannot be written, or the parts belong to another computation.
     pub fn all_pieces<T: Serialize + DeserializeOwned>(
         &self,
-        command: &impl Spreads,
+        command: &impl Spreadable,
         piece_count: usize,
         compute_piece: impl FnMut(usize) -> T,
     ) -> Result<Option<Vec<T>>, Failure> {

@@ -1,11 +1,11 @@
 //! Suggestions for a mistyped name.
 
-/// Smallest similarity of two words, from 0 to 1, at which a word counts as a mistyped form of a name. clap uses the
-/// same value for commands and options.
+/// Smallest similarity, from 0 to 1, of a name that is suggested for a word. clap uses the same value for commands and
+/// options.
 const MIN_SIMILARITY: f64 = 0.7;
 
 /// The text `; did you mean NAME?` with the name that is most similar to `word`; empty if no name is similar.
-pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+pub fn suggestion_text<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let candidates = names
         .into_iter()
         .map(|name| (strsim::jaro(word, name), name))
@@ -21,12 +21,12 @@ mod tests {
     #[test]
     fn the_most_similar_name_is_suggested_and_no_dissimilar_one() {
         let names = ["stand", "walk", "arc-left", "arc-right"];
-        assert_eq!(did_you_mean("wlak", names), "; did you mean `walk`?");
+        assert_eq!(suggestion_text("wlak", names), "; did you mean `walk`?");
         assert_eq!(
-            did_you_mean("arc left", names),
+            suggestion_text("arc left", names),
             "; did you mean `arc-left`?"
         );
-        assert_eq!(did_you_mean("xyz", names), "");
-        assert_eq!(did_you_mean("walk", []), "");
+        assert_eq!(suggestion_text("xyz", names), "");
+        assert_eq!(suggestion_text("walk", []), "");
     }
 }

@@ -7,30 +7,30 @@ use crate::key::{PLAY_INDEX, TWIST_INDEX};
 use crate::problem::MODEL_ERROR;
 
 /// Number of gaits.
-const GAITS: usize = 8;
-/// Standard error of each measured figure.
-const ERROR: f64 = 0.05;
+const GAIT_COUNT: usize = 8;
+/// Standard error of each measured mean, mm and deg.
+const MEAN_ERROR: f64 = 0.05;
 
 /// A model whose movements are curved functions of the keys, with other coefficients for each gait.
 fn model_travels(values: &Values) -> Vec<Travel> {
     let mut rng = Rng::with_seed(5);
     let mut next_part = || {
-        let mut movement = 0.0;
+        let mut part = 0.0;
         for (value, key) in values.iter().zip(&KEYS) {
             let x = value / key.prior_error();
-            movement += random_deviate(&mut rng) * (x + 0.1 * x * x);
+            part += random_deviate(&mut rng) * (x + 0.1 * x * x);
         }
-        movement
+        part
     };
     let mut next_travel = |_| Travel {
         forward: 30.0 + next_part(),
         left: next_part(),
         turn: 5.0 + next_part(),
     };
-    (0..GAITS).map(&mut next_travel).collect()
+    (0..GAIT_COUNT).map(&mut next_travel).collect()
 }
 
-/// An approximately normal deviate: the sum of twelve uniform ones.
+/// An approximately normal deviate: the sum of twelve uniform deviates.
 fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
@@ -40,7 +40,7 @@ fn file_values() -> Values {
     std::array::from_fn(|i| KEYS[i].min_value.max(0.0))
 }
 
-/// The movements of a robot with random measurement errors, as a camera sees them by a card with this mounting error.
+/// The movements of a robot as a camera measures them: by a card with this mounting error, and with random errors.
 fn measure_robot(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let movement_of = |travel: Travel| {
         let card_travel = card.card_travel(travel);
@@ -48,8 +48,8 @@ fn measure_robot(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMove
         MeasuredMovement {
             gait: "walk".to_owned(),
             pace: 1.0,
-            mean: parts.map(|part| part + ERROR.hypot(MODEL_ERROR) * random_deviate(rng)),
-            error: [ERROR; 3],
+            mean: parts.map(|part| part + MEAN_ERROR.hypot(MODEL_ERROR) * random_deviate(rng)),
+            error: [MEAN_ERROR; 3],
         }
     };
     model_travels(values).into_iter().map(movement_of).collect()
@@ -68,14 +68,14 @@ fn verdicts_of(result: &Identified) -> Vec<Verdict> {
 #[test]
 fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
     let (
-        mut within_count,
+        mut near_count,
         mut changed_count,
         mut moved_count,
         mut unchanged_count,
         mut explained_count,
     ) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    const ROBOTS: u64 = 300;
-    for seed in 0..ROBOTS {
+    const ROBOT_COUNT: u64 = 300;
+    for seed in 0..ROBOT_COUNT {
         let mut rng = Rng::with_seed(seed);
         let mut true_values = file_values();
         let is_changed: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
@@ -96,7 +96,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
             assert!(key.verdict != Verdict::Undetermined, "{seed} {key:?}");
             if is_changed[i] {
                 changed_count += 1.0;
-                within_count += f64::from(u8::from(
+                near_count += f64::from(u8::from(
                     (key.new_value - true_values[i]).abs() <= 2.0 * key.error,
                 ));
             } else {
@@ -108,7 +108,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
             assert!(distance == 0.0 || distance >= 2.0 * key.error);
         }
     }
-    let share = within_count / changed_count;
+    let share = near_count / changed_count;
     assert!(
         (0.93..=0.985).contains(&share),
         "{share} of {changed_count}"
@@ -118,7 +118,10 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
         "{} of {unchanged_count}",
         moved_count / unchanged_count
     );
-    assert!(explained_count / ROBOTS as f64 > 0.97, "{explained_count}");
+    assert!(
+        explained_count / ROBOT_COUNT as f64 > 0.97,
+        "{explained_count}"
+    );
 }
 
 #[test]

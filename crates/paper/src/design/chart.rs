@@ -1,4 +1,4 @@
-//! The performance charts: all figures of performance over the whole triangle of r1, r2 and r3.
+//! The performance charts: the performance of every design in the triangle of r1, r2 and r3.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -18,15 +18,15 @@ pub struct ChartPoint {
 }
 
 /// Computes the charts at the points of [`triangle_points`](super::triangle_points), on all cores. The numbers and
-/// their order are the same in every run. `progress` is called after each point.
-pub fn compute_chart(
+/// their order are the same in every run. Calls `report_progress` after each point.
+pub fn compute_chart_points(
     points: Vec<Proportions>,
     ring_count: usize,
-    progress: &(dyn Fn() + Sync),
+    report_progress: &(dyn Fn() + Sync),
 ) -> Vec<ChartPoint> {
     let compute = |proportions: Proportions| {
         let performance = Performance::of(&proportions.at_scale(1.0), ring_count);
-        progress();
+        report_progress();
         ChartPoint {
             proportions,
             performance,

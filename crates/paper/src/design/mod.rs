@@ -5,7 +5,7 @@ mod performance;
 mod proportions;
 mod search;
 
-pub use chart::{ChartPoint, compute_chart};
+pub use chart::{ChartPoint, compute_chart_points};
 pub use performance::{CLAIMED_LCI, Conditioning, Performance, lci};
 pub use proportions::{PROPORTION_SUM, Proportions, triangle_points};
-pub use search::{Demands, Design, Search, find_design, merge_ranked};
+pub use search::{Demands, Design, Search, find_design, merge_and_rank};

@@ -25,7 +25,7 @@ pub struct Performance {
 pub struct Conditioning {
     /// Mean index over the circle's area (the global conditioning index).
     pub mean: f64,
-    /// Least index; it is on the rim, and 0 at the points where the circle touches the workspace's edge.
+    /// Least index; it is on the rim, and is 0 if the circle touches the workspace's edge.
     pub least: f64,
     /// Largest index in the circle.
     pub most: f64,
@@ -42,7 +42,7 @@ pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
 }
 
 impl Performance {
-    /// Computes the performance of a five-bar. The inscribed circle is sampled at `ring_count` rings.
+    /// Computes the performance of a five-bar. The inscribed circle is sampled on `ring_count` rings.
     pub fn of(bars: &FiveBar, ring_count: usize) -> Self {
         let workspace = Workspace::of(bars);
         let circle = workspace.inscribed_circle();
@@ -56,8 +56,8 @@ impl Performance {
 }
 
 impl Conditioning {
-    /// Samples rings of equal area, each at the ring's middle. Then searches outward for the radius at which the index
-    /// first falls below the claimed bound.
+    /// Samples the circle on rings of equal area, and on its rim. Then refines the largest index, and searches outward
+    /// for the radius at which the index first falls below the claimed bound.
     fn sample(bars: &FiveBar, circle: Circle, ring_count: usize) -> Self {
         let spoke_count = 4 * ring_count;
         let mut sum = 0.0;
@@ -77,7 +77,7 @@ impl Conditioning {
                 }
             }
         }
-        // The rim is sampled, too, with the four points at which it touches the edge of the workspace.
+        // The samples on the rim include the four points at which the circle may touch the workspace's edge.
         for spoke in 0..spoke_count {
             let direction = Vector::direction(spoke as f64 * 360.0 / spoke_count as f64);
             min_index = min_index.min(lci(bars, circle.centre + direction * circle.radius));
@@ -89,12 +89,12 @@ impl Conditioning {
                 min_index = min_index.min(lci(bars, touch_point));
             }
         }
-        let count = (ring_count * spoke_count) as f64;
+        let sample_count = (ring_count * spoke_count) as f64;
         Self {
-            mean: sum / count,
+            mean: sum / sample_count,
             least: min_index,
             most: largest_index_near(bars, circle, best_sample, circle.radius / ring_count as f64),
-            share_above: count_above as f64 / count,
+            share_above: count_above as f64 / sample_count,
             radius_above: Self::radius_above(bars, circle, ring_count),
         }
     }
@@ -133,26 +133,27 @@ impl Conditioning {
     }
 }
 
-/// The largest index in the circle near a sample, found by hill climbing with steps that are halved.
+/// Searches for the largest index in the circle near a sample, by hill climbing. The step is halved if no neighbour is
+/// better.
 fn largest_index_near(
     bars: &FiveBar,
     circle: Circle,
     start_sample: (f64, Vector),
-    step: f64,
+    first_step: f64,
 ) -> f64 {
     let (mut value, mut point) = start_sample;
-    let mut step_size = step;
-    while step_size > 1e-5 * step {
+    let mut step = first_step;
+    while step > 1e-5 * first_step {
         let directions = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
         let best_neighbour = directions
-            .map(|(x, y)| point + Vector::new(x, y) * step_size)
+            .map(|(x, y)| point + Vector::new(x, y) * step)
             .into_iter()
             .filter(|p| (*p - circle.centre).length() <= circle.radius)
             .map(|p| (lci(bars, p), p))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         match best_neighbour {
             Some(best_neighbour) if best_neighbour.0 > value => (value, point) = best_neighbour,
-            _ => step_size /= 2.0,
+            _ => step /= 2.0,
         }
     }
     value

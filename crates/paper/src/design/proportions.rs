@@ -33,7 +33,7 @@ impl Proportions {
     /// mechanism can be assembled; and the sum 0.9.
     ///
     /// # Errors
-    /// Returns a message that says which constraint is violated.
+    /// Returns a message that names the violated constraint.
     pub fn new(r1: f64, r2: f64, r3: f64) -> Result<Self, String> {
         for (name, value, max) in [
             ("r1", r1, PROPORTION_SUM),
@@ -64,7 +64,7 @@ impl Proportions {
         Ok(Self { r1, r2, r3 })
     }
 
-    /// The five-bar with dimensional factor `d`, mm.
+    /// The five-bar with the dimensional factor `d` (mm).
     pub fn at_scale(&self, d: f64) -> FiveBar {
         FiveBar {
             base: 2.0 * self.r3 * d,
@@ -81,13 +81,13 @@ impl Proportions {
     }
 }
 
-/// The points of the whole triangle on a grid of this step, without the edges, at which a link vanishes.
+/// The grid points inside the triangle of r1, r2 and r3. The edges are left out, because a link has no length there.
 pub fn triangle_points(step: f64) -> Vec<Proportions> {
-    let count = (PROPORTION_SUM / step + 1e-9) as usize;
+    let step_count = (PROPORTION_SUM / step + 1e-9) as usize;
     let mut points = Vec::new();
-    for i in 1..count {
-        for j in 1..count {
-            // Computed from integers, so that rounding does not decide whether a point is on an edge.
+    for i in 1..step_count {
+        for j in 1..step_count {
+            // Products of integers, because a sum of steps accumulates rounding errors.
             let (r1, r2) = (i as f64 * step, j as f64 * step);
             let r3 = PROPORTION_SUM - r1 - r2;
             if r3 > step * 1e-6 && r3 < PROPORTION_SUM / 2.0 - step * 1e-6 {

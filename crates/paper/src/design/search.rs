@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::proportions::{Proportions, triangle_points};
 
-/// The demands on a design that do not depend on its proportions.
+/// The demands on every design.
 #[derive(Clone, Copy)]
 pub struct Demands {
     /// Base l0, mm.
@@ -30,7 +30,7 @@ pub struct Demands {
     pub sweep_deg: f64,
 }
 
-/// A design whose safe sweep is at least as large as demanded.
+/// A design whose safe sweep is at least the demanded sweep.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Design {
     /// The proportions of the five-bar.
@@ -72,7 +72,7 @@ impl Search {
         }
     }
 
-    /// The number of all pieces.
+    /// The total number of pieces.
     pub fn piece_count(&self) -> usize {
         self.points.len().div_ceil(PIECE_SIZE)
     }
@@ -82,8 +82,8 @@ impl Search {
         self.points.len().min(piece_count * PIECE_SIZE)
     }
 
-    /// Computes the designs of one piece that meet the demands. `progress` is called after each point.
-    pub fn compute_piece(&self, index: usize, progress: &(dyn Fn() + Sync)) -> Vec<Design> {
+    /// Computes the designs of one piece that meet the demands. Calls `report_progress` after each point.
+    pub fn compute_piece(&self, index: usize, report_progress: &(dyn Fn() + Sync)) -> Vec<Design> {
         let points = self
             .points
             .chunks(PIECE_SIZE)
@@ -91,7 +91,7 @@ impl Search {
             .unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
             let design = find_design(*point, &self.demands);
-            progress();
+            report_progress();
             design
         });
         designs.collect()
@@ -99,14 +99,14 @@ impl Search {
 }
 
 /// Merges the designs of all pieces and ranks them, best first.
-pub fn merge_ranked(pieces: Vec<Vec<Design>>) -> Vec<Design> {
+pub fn merge_and_rank(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     let mut designs = pieces.concat();
-    rank(&mut designs);
+    rank_designs(&mut designs);
     designs
 }
 
-/// Finds the best design with these proportions, without a score; `None` if its safe sweep is smaller than demanded,
-/// or if it has a link that is too short.
+/// Finds the best design with these proportions, without a score. Returns `None` if its safe sweep is smaller than
+/// demanded, or if a link is too short.
 pub fn find_design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base_mm);
     let bars = proportions.at_scale(d);
@@ -139,15 +139,15 @@ pub fn find_design(proportions: Proportions, demands: &Demands) -> Option<Design
 /// The largest sweep about a neutral angle within all limits, degrees.
 fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
     let (mut safe_deg, mut unsafe_deg) = (0.0, demands.travel_deg.min(89.9));
-    if !meets_demands(bars, neutral, safe_deg, demands) {
+    if !keeps_limits(bars, neutral, safe_deg, demands) {
         return 0.0;
     }
     for _ in 0..9 {
-        let middle = (safe_deg + unsafe_deg) / 2.0;
-        if meets_demands(bars, neutral, middle, demands) {
-            safe_deg = middle;
+        let middle_deg = (safe_deg + unsafe_deg) / 2.0;
+        if keeps_limits(bars, neutral, middle_deg, demands) {
+            safe_deg = middle_deg;
         } else {
-            unsafe_deg = middle;
+            unsafe_deg = middle_deg;
         }
     }
     safe_deg
@@ -157,7 +157,7 @@ fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
 const SWEEP_SAMPLES: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// True if the five-bar and the sliders keep the limits at all sampled angles of the sweep.
-fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
+fn keeps_limits(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
     let slider = slider_of_side(bars, demands);
     // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
@@ -168,13 +168,13 @@ fn meets_demands(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) ->
     };
     let nominal_span = span_of(neutral, neutral);
     SWEEP_SAMPLES.iter().all(|&left_fraction| {
-        let left = neutral + left_fraction * sweep;
+        let left_angle = neutral + left_fraction * sweep;
         SWEEP_SAMPLES.iter().all(|&right_fraction| {
-            let right = 180.0 - neutral + right_fraction * sweep;
-            let travel = span_of(left, neutral + right_fraction * sweep) - nominal_span;
+            let right_angle = 180.0 - neutral + right_fraction * sweep;
+            let travel = span_of(left_angle, neutral + right_fraction * sweep) - nominal_span;
             limits.violation_of(Check::StrokeLeft, travel).is_none()
                 && bars
-                    .forward(left, right)
+                    .forward(left_angle, right_angle)
                     .is_ok_and(|pose| limits.end_violations(End::Head, &pose).next().is_none())
         })
     })
@@ -196,10 +196,11 @@ fn margin_and_lci(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
     let mut least_margin = f64::INFINITY;
     let mut lci_sum = 0.0;
     for left_fraction in SWEEP_SAMPLES {
-        let left = neutral + left_fraction * sweep;
-        least_margin = least_margin.min(left.to_radians().sin());
+        let left_angle = neutral + left_fraction * sweep;
+        // The margin of the leg on this crank.
+        least_margin = least_margin.min(left_angle.to_radians().sin());
         for right_fraction in SWEEP_SAMPLES {
-            if let Ok(pose) = bars.forward(left, 180.0 - neutral + right_fraction * sweep) {
+            if let Ok(pose) = bars.forward(left_angle, 180.0 - neutral + right_fraction * sweep) {
                 least_margin = least_margin.min(pose.margin());
                 lci_sum += pose.lci();
             }
@@ -212,7 +213,7 @@ fn margin_and_lci(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
 }
 
 /// Scores the designs and sorts them, best first.
-fn rank(designs: &mut [Design]) {
+fn rank_designs(designs: &mut [Design]) {
     let best_of =
         |value: fn(&Design) -> f64| designs.iter().map(value).fold(f64::MIN_POSITIVE, f64::max);
     let (lci, margin, stride) = (

@@ -1,4 +1,4 @@
-//! The result for one printed equation, and its wording.
+//! The result for one printed equation, as numbers and in words.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 /// An equation with its measured errors.
 #[derive(Serialize)]
 pub struct Entry {
-    /// The equation's place in the paper.
+    /// The equation's section and name in the paper.
     pub place: &'static str,
     /// The equation as printed.
     pub printed: &'static str,
@@ -22,10 +22,10 @@ pub struct Entry {
     /// The largest error of the printed form in a special case, in `unit`, and the name of that case; null if there is
     /// no special case.
     pub aside: Option<(f64, &'static str)>,
-    /// True if the printed form holds with right-hand angles measured clockwise from -x; null if
-    /// the drawings do not suggest that reading.
+    /// True if the printed form holds with right-hand angles measured clockwise from -x; null if the drawings do not
+    /// suggest this convention.
     pub holds_clockwise: Option<bool>,
-    /// The corrected form; null if the paper needs none.
+    /// The corrected form; null if the printed form needs no correction.
     pub corrected: Option<&'static str>,
     /// The largest error of the corrected form, in `unit`.
     pub corrected_worst: Option<f64>,
@@ -84,6 +84,6 @@ impl Entry {
 
 /// Formats a value with three significant digits, without an exponent.
 fn format_three_digits(value: f64) -> String {
-    let digits = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9);
-    format!("{value:.0$}", digits as usize)
+    let decimals = (2 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 9);
+    format!("{value:.0$}", decimals as usize)
 }

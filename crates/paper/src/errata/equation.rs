@@ -7,7 +7,7 @@ pub type ErrorFn = fn(&Sample) -> Option<f64>;
 
 /// A printed equation.
 pub struct Equation {
-    /// The equation's place in the paper.
+    /// The equation's section and name in the paper.
     pub place: &'static str,
     /// The equation as printed.
     pub printed: &'static str,
@@ -15,12 +15,12 @@ pub struct Equation {
     pub printed_error: ErrorFn,
     /// Unit of every error of this equation.
     pub unit: &'static str,
-    /// The error if right-hand angles are read clockwise from -x; `None` if the paper's drawing does not suggest this
-    /// reading.
-    pub clockwise: Option<ErrorFn>,
-    /// The corrected form, and its error.
-    pub corrected: Option<(&'static str, ErrorFn)>,
-    /// A special case, and the error of the printed form in that case; it does not affect the verdict.
+    /// The error of the printed form with right-hand angles measured clockwise from -x; `None` if the paper's drawing
+    /// does not suggest this convention.
+    pub clockwise_error: Option<ErrorFn>,
+    /// The corrected form and its error.
+    pub correction: Option<(&'static str, ErrorFn)>,
+    /// A special case, and the error of the printed form in this case. The special case does not affect the verdict.
     pub special_case: Option<(&'static str, ErrorFn)>,
 }
 
@@ -37,25 +37,25 @@ impl Equation {
             printed,
             printed_error,
             unit,
-            clockwise: None,
-            corrected: None,
+            clockwise_error: None,
+            correction: None,
             special_case: None,
         }
     }
 
-    /// Adds the error if right-hand angles are read clockwise from -x.
-    pub const fn clockwise(mut self, error_fn: ErrorFn) -> Self {
-        self.clockwise = Some(error_fn);
+    /// Adds the error of the printed form with right-hand angles measured clockwise from -x.
+    pub const fn with_clockwise_error(mut self, error_fn: ErrorFn) -> Self {
+        self.clockwise_error = Some(error_fn);
         self
     }
 
     /// Adds the corrected form and its error.
-    pub const fn corrected(mut self, form: &'static str, error_fn: ErrorFn) -> Self {
-        self.corrected = Some((form, error_fn));
+    pub const fn with_correction(mut self, form: &'static str, error_fn: ErrorFn) -> Self {
+        self.correction = Some((form, error_fn));
         self
     }
 
-    /// Adds a special case, and the error of the printed form in that case.
+    /// Adds a special case, and the error of the printed form in this case.
     pub const fn with_special_case(
         mut self,
         special_case: &'static str,
@@ -76,7 +76,7 @@ pub struct FormErrors {
 }
 
 impl FormErrors {
-    /// Smaller errors are rounding errors, in any unit.
+    /// Errors below this value are rounding errors, in any unit.
     const ROUNDING: f64 = 1e-6;
 
     /// Evaluates a form at all samples.
@@ -95,7 +95,7 @@ impl FormErrors {
         }
     }
 
-    /// True if the form has a real value at every sample, and its errors are only from rounding.
+    /// True if the form has a real value at every sample, and all its errors are rounding errors.
     pub fn holds(&self) -> bool {
         self.largest < Self::ROUNDING && self.unreal_share == 0.0
     }

@@ -26,7 +26,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
     )
-    .clockwise(|sample| {
+    .with_clockwise_error(|sample| {
         let (links, theta) = (&sample.lizard.links, sample.theta());
         Some(loop_gap(
             [
@@ -50,7 +50,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
     )
-    .corrected(
+    .with_correction(
         "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
         |sample| {
             let Some(vanishing_theta4) = theta4_of_vanishing_a(sample) else {
@@ -89,7 +89,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(angle_error_deg(2.0 * tangent.atan(), sample.theta()[2]))
         },
     )
-    .corrected(
+    .with_correction(
         "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
         |sample| {
             let (d, e, f) = def_coefficients(sample, -1.0);
@@ -160,13 +160,13 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
     )
-    .clockwise(|sample| {
+    .with_clockwise_error(|sample| {
         Some(angle_error_deg(
             sample.theta()[10] + (PI - sample.theta()[11]),
             0.0,
         ))
     })
-    .corrected("θ11 = θ10 + 180°", |sample| {
+    .with_correction("θ11 = θ10 + 180°", |sample| {
         Some(angle_error_deg(sample.theta()[11], sample.theta()[10] + PI))
     }),
     Equation::new(
@@ -180,13 +180,13 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
     )
-    .clockwise(|sample| {
+    .with_clockwise_error(|sample| {
         Some(angle_error_deg(
             sample.theta()[14] + (PI - sample.theta()[15]),
             0.0,
         ))
     })
-    .corrected("θ15 = θ14 + 180°", |sample| {
+    .with_correction("θ15 = θ14 + 180°", |sample| {
         Some(angle_error_deg(sample.theta()[15], sample.theta()[14] + PI))
     }),
     Equation::new("4.2 arm on A1", "θ1 - θ12 + C1 = 0", "deg", |sample| {
@@ -201,13 +201,13 @@ pub const EQUATIONS: &[Equation] = &[
             sample.theta()[16],
         ))
     })
-    .clockwise(|sample| {
+    .with_clockwise_error(|sample| {
         Some(angle_error_deg(
             PI - sample.theta()[4] + FRAC_PI_2,
             PI - sample.theta()[16],
         ))
     })
-    .corrected("θ16 = θ4 - C2", |sample| {
+    .with_correction("θ16 = θ4 - C2", |sample| {
         Some(angle_error_deg(
             sample.theta()[4] - FRAC_PI_2,
             sample.theta()[16],
@@ -225,13 +225,13 @@ pub const EQUATIONS: &[Equation] = &[
             sample.theta()[8],
         ))
     })
-    .clockwise(|sample| {
+    .with_clockwise_error(|sample| {
         Some(angle_error_deg(
             PI - sample.theta()[13] + FRAC_PI_2,
             PI - sample.theta()[8],
         ))
     })
-    .corrected("θ13 = θ8 + C4", |sample| {
+    .with_correction("θ13 = θ8 + C4", |sample| {
         Some(angle_error_deg(
             sample.theta()[13] - FRAC_PI_2,
             sample.theta()[8],
@@ -239,24 +239,25 @@ pub const EQUATIONS: &[Equation] = &[
     }),
 ];
 
-/// |first + second - third - fourth - base|, mm.
+/// The length of the vector first + second - third - fourth - base, mm; 0 for a closed loop.
 fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
     let [a, b, c, d] = links.map(|(length, angle)| polar(length, angle));
     (a + b - c - d - Vector::new(base, 0.0)).length()
 }
 
-/// Tangent of half an angle by the quadratic formula; `root_sign` selects the root. `None` if the roots are not real.
+/// The tangent of half an angle, by the quadratic formula. `root_sign` selects the root. `None` if the roots are not
+/// real.
 fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
     let radicand = b * b - 4.0 * a * c;
     (radicand >= 0.0).then(|| (-b + root_sign * radicand.sqrt()) / (2.0 * a))
 }
 
-/// The coefficients A, B, C as printed, at this theta4 (rad) and the sample's theta1.
+/// The coefficients A, B and C as printed, for this theta4 (rad) and the sample's theta1.
 fn abc_coefficients(sample: &Sample, theta4: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
     } = sample.lizard.links;
-    // Not through `angles`, which takes arc tangents that are not needed here.
+    // `Sample::theta` would compute arc tangents that are not needed here.
     let theta1 = sample.solution.pose.theta1 * PI / 180.0;
     let k1 = l4 * theta4.sin() - l1 * theta1.sin();
     let k2 = l4 * theta4.cos() - l1 * theta1.cos() + l0;
@@ -268,7 +269,7 @@ fn abc_coefficients(sample: &Sample, theta4: f64) -> (f64, f64, f64) {
     )
 }
 
-/// The coefficients D, E, F; `base_sign` is the sign of l0 in K4: 1 as printed, -1 as corrected.
+/// The coefficients D, E and F. `base_sign` is the sign of l0 in K4: 1 as printed, -1 as corrected.
 fn def_coefficients(sample: &Sample, base_sign: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -284,8 +285,7 @@ fn def_coefficients(sample: &Sample, base_sign: f64) -> (f64, f64, f64) {
     )
 }
 
-/// The theta4 at which A vanishes for the sample's theta1, radians; `None` if there is none in
-/// [-90, 90] degrees.
+/// The theta4 (rad) at which A is 0 for the sample's theta1; `None` if there is no such angle from -90 to 90 degrees.
 fn theta4_of_vanishing_a(sample: &Sample) -> Option<f64> {
     let a_of = |theta4: f64| abc_coefficients(sample, theta4).0;
     let angle_at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
@@ -302,7 +302,7 @@ fn theta4_of_vanishing_a(sample: &Sample) -> Option<f64> {
     Some(low)
 }
 
-/// The error of the printed theta3 close to the theta4 where A vanishes; 0 for a sample without such a theta4.
+/// The error of the printed theta3 close to the theta4 at which A is 0; 0 for a sample without such a theta4.
 fn error_near_vanishing_a(sample: &Sample) -> Option<f64> {
     let Some(vanishing_theta4) = theta4_of_vanishing_a(sample) else {
         return Some(0.0);

@@ -39,7 +39,7 @@ pub const EQUATIONS: &[Equation] = &[
             )
         },
     )
-    .corrected(
+    .with_correction(
         "(x11 - l4 cos θ4 - l0/2)² + (y11 - l4 sin θ4)² = l3²",
         |sample| {
             let links = &sample.lizard.links;
@@ -67,7 +67,7 @@ pub const EQUATIONS: &[Equation] = &[
             )
         },
     )
-    .corrected(
+    .with_correction(
         "the same in a frame turned by 180°: x21, y21 negated, θ8 - 180°",
         |sample| {
             let links = &sample.lizard.links;
@@ -95,7 +95,7 @@ pub const EQUATIONS: &[Equation] = &[
             )
         },
     )
-    .corrected(
+    .with_correction(
         "in the turned frame (x21 - l6 cos θ5 - l5/2)² + (y21 - l6 sin θ5)² = l7²",
         |sample| {
             let links = &sample.lizard.links;
@@ -121,7 +121,7 @@ pub const EQUATIONS: &[Equation] = &[
             )
         },
     )
-    .corrected(
+    .with_correction(
         "2 x31 = l11 cos θ9 + l14 cos θ12, from the middle of l10",
         |sample| {
             let (links, theta) = (&sample.lizard.links, sample.theta());
@@ -145,7 +145,7 @@ pub const EQUATIONS: &[Equation] = &[
             )
         },
     )
-    .corrected(
+    .with_correction(
         "2 x41 = l16 cos θ13 + l19 cos θ16, from the middle of l15",
         |sample| {
             let (links, theta) = (&sample.lizard.links, sample.theta());
@@ -169,7 +169,7 @@ fn tail_point(sample: &Sample) -> Vector {
     End::Tail.mirror(sample.solution.tail.end_point)
 }
 
-/// The middle of a slider relative to the middle between its shafts: 0 left, 1 right.
+/// The middle of a slider, relative to the middle between its shafts. `side` is 0 for left, 1 for right.
 fn slider_middle(sample: &Sample, side: usize) -> Vector {
     let slider = [&sample.solution.left, &sample.solution.right][side];
     (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5

@@ -26,7 +26,7 @@ pub const EQUATIONS: &[Equation] = &[
         "deg",
         |sample| follower_error(sample, FRONT_LEGS, 1.0, None),
     )
-    .corrected("the root with - for 0 < θ_lg < 180°", |sample| {
+    .with_correction("the root with - for 0 < θ_lg < 180°", |sample| {
         follower_error(sample, FRONT_LEGS, -1.0, None)
     }),
     Equation::new(
@@ -46,7 +46,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(front?.max(back?))
         },
     )
-    .corrected("H = -2 sin θ_lgi", |sample| {
+    .with_correction("H = -2 sin θ_lgi", |sample| {
         Some(
             follower_error(sample, &[4], -1.0, None)?
                 .max(follower_error(sample, BACK_LEGS, 1.0, None)?),
@@ -58,14 +58,14 @@ pub const EQUATIONS: &[Equation] = &[
         "deg",
         |sample| coupler_error(sample, FRONT_LEGS, -1.0, -1.0),
     )
-    .corrected(
+    .with_correction(
         "J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ",
         |sample| coupler_error(sample, FRONT_LEGS, 1.0, -1.0),
     ),
     Equation::new("4.2 θ_lg12, back legs", "the same", "deg", |sample| {
         coupler_error(sample, BACK_LEGS, -1.0, -1.0)
     })
-    .corrected(
+    .with_correction(
         "J and L as above, and the + root for 180° < θ_lg < 360°",
         |sample| coupler_error(sample, BACK_LEGS, 1.0, 1.0),
     ),
@@ -89,8 +89,8 @@ fn largest_error(
         .try_fold(0.0, |worst: f64, value| Some(worst.max(value?)))
 }
 
-/// The error of the follower's angle by G, H, I as printed, or with another H. `root_sign` selects the root. In a
-/// parallelogram the follower has the same angle as the crank.
+/// The error of the follower's angle from G, H and I as printed, or from another H. `root_sign` selects the root. In a
+/// parallelogram, the true angle of the follower is the crank's angle.
 fn follower_error(sample: &Sample, legs: &[usize], root_sign: f64, h: Option<f64>) -> Option<f64> {
     let Leg {
         ground,
@@ -113,8 +113,8 @@ fn follower_error(sample: &Sample, legs: &[usize], root_sign: f64, h: Option<f64
     })
 }
 
-/// The error of the coupler's angle by J, K, L. In a parallelogram this angle is 0. `term_sign` is the sign of the
-/// terms in lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
+/// The error of the coupler's angle from J, K and L. In a parallelogram, the true angle is 0. `term_sign` is the sign
+/// of the terms in lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
 fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64) -> Option<f64> {
     let Leg {
         ground,
@@ -138,8 +138,8 @@ fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64
     })
 }
 
-/// Tangent of half an angle by the quadratic formula; `root_sign` selects the root. `None` if the roots are not real.
-/// Rounding may make a radicand of zero slightly negative.
+/// The tangent of half an angle, by the quadratic formula. `root_sign` selects the root. `None` if the roots are not
+/// real. A radicand of zero may be slightly negative from rounding.
 fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
     let radicand = b * b - 4.0 * a * c;
     (radicand > -1e-12).then(|| (-b + root_sign * radicand.max(0.0).sqrt()) / (2.0 * a))

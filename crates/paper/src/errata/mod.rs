@@ -1,5 +1,5 @@
-//! Every equation of the paper, compared with the geometric solution. Only the equations are typed in; everything else
-//! is computed.
+//! Every equation of the paper, compared with the geometric solution. Only the equations are written by hand; all
+//! results are computed.
 
 mod entry;
 mod equation;
@@ -19,10 +19,10 @@ use sample::Sample;
 pub use entry::Entry;
 pub use table::{format_markdown, format_text};
 
-/// Number of random poses behind docs/errata.md.
+/// Number of random poses for docs/errata.md.
 pub const SAMPLE_COUNT: u32 = 20_000;
 
-/// The paper's equations, in its order.
+/// The paper's equations, in the order of the paper.
 fn equations() -> Vec<&'static Equation> {
     [
         synthesis::EQUATIONS,
@@ -42,15 +42,15 @@ pub fn equation_count() -> usize {
 }
 
 /// Measures every equation at `sample_count` random poses, on all cores. The results are in the paper's order.
-/// `progress` is called after each equation.
-pub fn measure(sample_count: u32, progress: &(dyn Fn() + Sync)) -> Vec<Entry> {
+/// Calls `report_progress` after each equation.
+pub fn measure(sample_count: u32, report_progress: &(dyn Fn() + Sync)) -> Vec<Entry> {
     let samples: Vec<Sample> = Sample::generate(sample_count as usize).collect();
     let measure_one = |equation: &Equation| {
         let printed = FormErrors::of(equation.printed_error, &samples);
         let corrected = equation
-            .corrected
+            .correction
             .map(|(_, error_fn)| FormErrors::of(error_fn, &samples));
-        progress();
+        report_progress();
         Entry {
             place: equation.place,
             printed: equation.printed,
@@ -62,9 +62,9 @@ pub fn measure(sample_count: u32, progress: &(dyn Fn() + Sync)) -> Vec<Entry> {
                 .special_case
                 .map(|(name, error_fn)| (FormErrors::of(error_fn, &samples).largest, name)),
             holds_clockwise: equation
-                .clockwise
+                .clockwise_error
                 .map(|error_fn| FormErrors::of(error_fn, &samples).holds()),
-            corrected: equation.corrected.map(|(form, _)| form),
+            corrected: equation.correction.map(|(form, _)| form),
             corrected_worst: corrected.map(|errors| errors.largest),
             corrected_holds: corrected.map(|errors| errors.holds()),
         }

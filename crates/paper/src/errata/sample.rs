@@ -13,7 +13,7 @@ pub const LINK_TABLE: [(&[usize], f64); 5] = [
     (&[10, 15], 135.0),
 ];
 
-/// The paper's robot, with the second l16 of its table taken as l17.
+/// The paper's robot. The second l16 of the paper's table is taken as l17.
 pub fn paper_lizard() -> Lizard {
     let mut lengths = [0.0; 20];
     for (links, length) in LINK_TABLE {
@@ -102,7 +102,7 @@ pub fn angle_error_deg(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }
 
-/// A SplitMix64 generator, because the table of errata must be the same on every run and every host.
+/// A SplitMix64 generator. Its numbers are the same on every run and every host, so the table of errata is, too.
 struct Random(u64);
 
 impl Random {

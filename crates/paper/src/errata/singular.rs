@@ -15,7 +15,7 @@ pub const EQUATIONS: &[Equation] = &[
         "columns more than servos",
         |sample| Some(8.0 - sample.solution.active_matrix()[0].len() as f64),
     )
-    .corrected("K is 8x4: four active rates, no determinant", |sample| {
+    .with_correction("K is 8x4: four active rates, no determinant", |sample| {
         Some(4.0 - sample.solution.active_matrix()[0].len() as f64)
     }),
     Equation::new(
@@ -24,8 +24,8 @@ pub const EQUATIONS: &[Equation] = &[
         "mm/rad",
         |sample| K_HEAD.printed_error(sample),
     )
-    .clockwise(|sample| K_HEAD.clockwise_error(sample))
-    .corrected("second column +l4 sin θ4, -l4 cos θ4", |sample| {
+    .with_clockwise_error(|sample| K_HEAD.clockwise_error(sample))
+    .with_correction("second column +l4 sin θ4, -l4 cos θ4", |sample| {
         K_HEAD.corrected_error(sample)
     }),
     Equation::new(
@@ -34,8 +34,8 @@ pub const EQUATIONS: &[Equation] = &[
         "mm/rad",
         |sample| K_TAIL.printed_error(sample),
     )
-    .clockwise(|sample| K_TAIL.clockwise_error(sample))
-    .corrected("second column +l9 sin θ8, -l9 cos θ8", |sample| {
+    .with_clockwise_error(|sample| K_TAIL.clockwise_error(sample))
+    .with_correction("second column +l9 sin θ8, -l9 cos θ8", |sample| {
         K_TAIL.corrected_error(sample)
     }),
     Equation::new(
@@ -56,7 +56,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
     )
-    .corrected("+l14 sin(C1 + θ1)", |sample| {
+    .with_correction("+l14 sin(C1 + θ1)", |sample| {
         let (links, theta) = (&sample.lizard.links, sample.theta());
         let block = side_block(
             [links.l11, links.l14],
@@ -87,7 +87,7 @@ pub const EQUATIONS: &[Equation] = &[
             ))
         },
     )
-    .corrected("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |sample| {
+    .with_correction("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |sample| {
         let (links, theta) = (&sample.lizard.links, sample.theta());
         let block = side_block(
             [links.l16, links.l19],
@@ -106,8 +106,8 @@ pub const EQUATIONS: &[Equation] = &[
         "mm/rad",
         |sample| K_STAR_HEAD.printed_error(sample),
     )
-    .clockwise(|sample| K_STAR_HEAD.clockwise_error(sample))
-    .corrected("second column +l3 sin θ3, -l3 cos θ3", |sample| {
+    .with_clockwise_error(|sample| K_STAR_HEAD.clockwise_error(sample))
+    .with_correction("second column +l3 sin θ3, -l3 cos θ3", |sample| {
         K_STAR_HEAD.corrected_error(sample)
     }),
     Equation::new(
@@ -116,8 +116,8 @@ pub const EQUATIONS: &[Equation] = &[
         "mm/rad",
         |sample| K_STAR_TAIL.printed_error(sample),
     )
-    .clockwise(|sample| K_STAR_TAIL.clockwise_error(sample))
-    .corrected("second column +l8 sin θ7, -l8 cos θ7", |sample| {
+    .with_clockwise_error(|sample| K_STAR_TAIL.clockwise_error(sample))
+    .with_correction("second column +l8 sin θ7, -l8 cos θ7", |sample| {
         K_STAR_TAIL.corrected_error(sample)
     }),
     Equation::new(
@@ -142,11 +142,11 @@ pub const EQUATIONS: &[Equation] = &[
             Some(((theta[2] + theta[3]).sin().abs() - sample.solution.margins.type2[0]).abs())
         },
     )
-    .clockwise(|sample| {
+    .with_clockwise_error(|sample| {
         let theta = sample.theta();
         Some(((theta[2] + PI - theta[3]).sin().abs() - sample.solution.margins.type2[0]).abs())
     })
-    .corrected("sin(θ3 - θ2) = 0", |sample| {
+    .with_correction("sin(θ3 - θ2) = 0", |sample| {
         let theta = sample.theta();
         // l2 l3 = 2500 mm^2.
         Some(
@@ -167,11 +167,11 @@ pub const EQUATIONS: &[Equation] = &[
             Some(((theta[6] + theta[7]).sin().abs() - sample.solution.margins.type2[1]).abs())
         },
     )
-    .clockwise(|sample| {
+    .with_clockwise_error(|sample| {
         let theta = sample.theta();
         Some(((theta[6] + PI - theta[7]).sin().abs() - sample.solution.margins.type2[1]).abs())
     })
-    .corrected("sin(θ7 - θ6) = 0", |sample| {
+    .with_correction("sin(θ7 - θ6) = 0", |sample| {
         let theta = sample.theta();
         // l7 l8 = 2500 mm^2.
         Some(
@@ -185,7 +185,7 @@ pub const EQUATIONS: &[Equation] = &[
         "in the sine, of a block that is never singular",
         |sample| Some(1.0 - (2.0 * sample.theta()[11]).sin().abs()),
     )
-    .corrected("never: the block's determinant is -d", |sample| {
+    .with_correction("never: the block's determinant is -d", |sample| {
         let [a, b, c, d] = passive_block(sample, 4);
         Some((a * d - b * c + sample.solution.left.d).abs())
     }),
@@ -195,7 +195,7 @@ pub const EQUATIONS: &[Equation] = &[
         "in the sine, of a block that is never singular",
         |sample| Some(1.0 - (2.0 * sample.theta()[14]).sin().abs()),
     )
-    .corrected("never: the block's determinant is -d", |sample| {
+    .with_correction("never: the block's determinant is -d", |sample| {
         let [a, b, c, d] = passive_block(sample, 6);
         Some((a * d - b * c + sample.solution.right.d).abs())
     }),
@@ -205,7 +205,7 @@ pub const EQUATIONS: &[Equation] = &[
         "columns more than drives",
         |sample| Some(2.0 - leg_freedom_count(sample)),
     )
-    .corrected("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |sample| {
+    .with_correction("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |sample| {
         Some(1.0 - leg_freedom_count(sample))
     }),
     Equation::new(
@@ -217,7 +217,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(((theta + 0.0 - theta).sin().abs() - theta.sin().abs()).abs())
         },
     )
-    .corrected(
+    .with_correction(
         "lg12 lg13 sin(θ_lg12 - θ_lg13) = 0, so sin θ_lg1 = 0",
         |sample| {
             let (leg, theta) = (&sample.lizard.leg, sample.theta()[1]);
@@ -254,41 +254,41 @@ fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
     Some((pose.type2, sum.to_radians()))
 }
 
-/// The 2x2 block of K or K* for the left and the right bar of the head or the tail.
+/// The 2x2 block of K or K* for a left and a right bar (crank or coupler) of the head or the tail.
 struct Block {
-    /// Computes the true block, by rows.
+    /// Returns the true block, by rows.
     true_block: fn(&Sample) -> [f64; 4],
     /// The paper's numbers of the left and the right bar's angles, 1 for theta1.
-    angles: [usize; 2],
+    angle_numbers: [usize; 2],
     /// The paper's numbers of the left and the right bar's lengths, 1 for l1.
-    bars: [usize; 2],
+    length_numbers: [usize; 2],
 }
 
 const K_HEAD: Block = Block {
     true_block: |sample| active_block(sample, 0, 0, 1),
-    angles: [1, 4],
-    bars: [1, 4],
+    angle_numbers: [1, 4],
+    length_numbers: [1, 4],
 };
 const K_TAIL: Block = Block {
     true_block: |sample| active_block(sample, 2, 3, 2),
-    angles: [5, 8],
-    bars: [6, 9],
+    angle_numbers: [5, 8],
+    length_numbers: [6, 9],
 };
 const K_STAR_HEAD: Block = Block {
     true_block: |sample| passive_block(sample, 0),
-    angles: [2, 3],
-    bars: [2, 3],
+    angle_numbers: [2, 3],
+    length_numbers: [2, 3],
 };
 const K_STAR_TAIL: Block = Block {
     true_block: |sample| passive_block(sample, 2),
-    angles: [6, 7],
-    bars: [7, 8],
+    angle_numbers: [6, 7],
+    length_numbers: [7, 8],
 };
 
 impl Block {
     /// The largest error of the printed block.
     fn printed_error(&self, sample: &Sample) -> Option<f64> {
-        let right_theta = sample.theta()[self.angles[1]];
+        let right_theta = sample.theta()[self.angle_numbers[1]];
         Some(largest_difference(
             &(self.true_block)(sample),
             &self.block_with(sample, right_theta, -1.0),
@@ -299,7 +299,7 @@ impl Block {
     /// derivative with respect to this angle has the opposite sign.
     fn clockwise_error(&self, sample: &Sample) -> Option<f64> {
         let [a, b, c, d] = (self.true_block)(sample);
-        let right_theta = PI - sample.theta()[self.angles[1]];
+        let right_theta = PI - sample.theta()[self.angle_numbers[1]];
         Some(largest_difference(
             &[a, -b, c, -d],
             &self.block_with(sample, right_theta, -1.0),
@@ -308,17 +308,18 @@ impl Block {
 
     /// The largest error of the corrected block.
     fn corrected_error(&self, sample: &Sample) -> Option<f64> {
-        let right_theta = sample.theta()[self.angles[1]];
+        let right_theta = sample.theta()[self.angle_numbers[1]];
         Some(largest_difference(
             &(self.true_block)(sample),
             &self.block_with(sample, right_theta, 1.0),
         ))
     }
 
-    /// The block in the paper's form, with the right bar's angle (rad) and the sign of its sine.
+    /// The block in the paper's form. `right_theta` is the right bar's angle (rad); `sign` is the sign of its sine.
     fn block_with(&self, sample: &Sample, right_theta: f64, sign: f64) -> [f64; 4] {
         let lengths = sample.lizard.links.to_array();
-        let ([left_bar, right_bar], left_theta) = (self.bars, sample.theta()[self.angles[0]]);
+        let ([left_bar, right_bar], left_theta) =
+            (self.length_numbers, sample.theta()[self.angle_numbers[0]]);
         [
             -lengths[left_bar] * left_theta.sin(),
             sign * lengths[right_bar] * right_theta.sin(),
@@ -380,7 +381,7 @@ fn determinant_sine([a, b, c, d]: &[f64; 4], length_product: f64) -> f64 {
     -(a * d - b * c) / length_product
 }
 
-/// The degrees of freedom of a leg, which equal the number of its drives.
+/// The number of a leg's degrees of freedom, which is the number of its drives.
 fn leg_freedom_count(sample: &Sample) -> f64 {
     crate::mobility::leg_freedoms(&sample.lizard, &sample.solution) as f64
 }

@@ -57,7 +57,7 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in radius",
         |sample| circle_error(sample, |y| y),
     )
-    .corrected("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |sample| {
+    .with_correction("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |sample| {
         circle_error(sample, |y| y * y)
     }),
     Equation::new(
@@ -92,7 +92,7 @@ pub const EQUATIONS: &[Equation] = &[
         "of LCI short",
         |sample| Some((CLAIMED_LCI - lci_at(sample, 1.0)).max(0.0)),
     )
-    .corrected(
+    .with_correction(
         "LCI > 0.7 inside the concentric circle of half the radius; \
          over the whole circle as a mean only",
         |sample| Some((CLAIMED_LCI - lci_at(sample, 0.5)).max(0.0)),
@@ -103,7 +103,7 @@ pub const EQUATIONS: &[Equation] = &[
         "links without a length",
         |_| Some(count_unlisted_links(|i, _| i)),
     )
-    .corrected("l12, l13, l17, l18 = 45", |_| {
+    .with_correction("l12, l13, l17, l18 = 45", |_| {
         Some(count_unlisted_links(|i, length| {
             if i == 16 && length == 45.0 { 17 } else { i }
         }))
@@ -117,7 +117,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some((min_margin - angle_deg.to_radians().sin().abs()).max(0.0))
         },
     )
-    .corrected(
+    .with_correction(
         "change points at theta_lg = 0 and 180; \
          the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
         |sample| {
@@ -127,27 +127,27 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// The error, in radius, of the circle equation at random points on the limits of the arms' reach. `y_term` returns the
-/// equation's term in y.
+/// The largest error, in radius, of the circle equation at random points on the limits of the arms' reach. `y_term`
+/// returns the equation's term in y.
 fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
     let bars = sample.lizard.end(End::Head);
     let mut largest_error = 0.0_f64;
-    for shaft in [-bars.base / 2.0, bars.base / 2.0] {
+    for shaft_x in [-bars.base / 2.0, bars.base / 2.0] {
         for radius in [
             bars.left_crank_length + bars.left_coupler_length,
             (bars.left_crank_length - bars.left_coupler_length).abs(),
         ] {
             let rim_point = polar(radius, PI * sample.random[0]);
-            // x11 is measured from the middle of the base, but the rim point from the shaft.
-            let (x11, y11) = (rim_point.x + shaft, rim_point.y);
-            let square = (x11 - shaft).powi(2) + y_term(y11);
+            // x11 is measured from the middle of the base. The rim point is measured from the shaft.
+            let (x11, y11) = (rim_point.x + shaft_x, rim_point.y);
+            let square = (x11 - shaft_x).powi(2) + y_term(y11);
             largest_error = largest_error.max((square.sqrt() - radius).abs());
         }
     }
     Some(largest_error)
 }
 
-/// The LCI at a random point of the inscribed circle, whose radius is multiplied by `radius_factor`.
+/// The LCI at a random point within the concentric circle of `radius_factor` times the inscribed circle's radius.
 fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
     let bars = sample.lizard.end(End::Head);
     Workspace::of(&bars)
@@ -161,8 +161,8 @@ fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
         })
 }
 
-/// Counts the links l0 to l19 that the table does not list. `link_number` returns the link number of an entry, as
-/// printed or corrected, from its printed number and its length.
+/// Counts the links l0 to l19 that the table does not list. `link_number` converts the printed number and the length of
+/// an entry into the entry's link number, as printed or as corrected.
 fn count_unlisted_links(link_number: fn(usize, f64) -> usize) -> f64 {
     let is_listed = |link: usize| {
         LINK_TABLE

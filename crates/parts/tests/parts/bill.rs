@@ -1,17 +1,18 @@
-//! Tests of the bill of materials: it counts the bodies of the assembly, and its spring is the strut's spring.
+//! Tests of the bill of materials: its counts, masses, prices and options, and the effect of the struts' springs.
 
 use lizard_parts::{Assembly, Bill, Item, Kind, SpringEffect};
 
-use crate::{STRUT, neutral};
+use crate::{SLOTTED_STRUTS_TOML, neutral_solution};
 
+/// The assembly and the bill of a robot of `robots/`.
 fn bill_of(name: &str) -> (Assembly, Bill) {
     bill_with(name, "")
 }
 
-/// The bill of a robot of `robots/`, with the lines `more_toml` added to its robot.toml.
+/// The assembly and the bill of a robot of `robots/`, with more lines of TOML appended.
 fn bill_with(name: &str, more_toml: &str) -> (Assembly, Bill) {
     let assembly = crate::assembly(name, more_toml);
-    let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
+    let bill = Bill::of(&assembly, &assembly.parts(), &neutral_solution(&assembly));
     (assembly, bill)
 }
 
@@ -40,23 +41,30 @@ fn every_body_is_printed_or_bought() {
 
 #[test]
 fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
-    let (_, paper) = bill_of("paper");
+    let (_, paper_bill) = bill_of("paper");
     // Everything except board and supply is symmetric, and board and supply balance each other to within the
     // tolerance.
-    let error = paper.centre[0].abs().max(paper.centre[1].abs());
-    assert!(error < 1.0, "{:?}", paper.centre);
-    assert!((350.0..450.0).contains(&paper.grams), "{}", paper.grams);
-    let (_, large) = bill_of("large");
-    assert!(large.grams > paper.grams);
+    let error = paper_bill.centre[0].abs().max(paper_bill.centre[1].abs());
+    assert!(error < 1.0, "{:?}", paper_bill.centre);
+    assert!(
+        (350.0..450.0).contains(&paper_bill.grams),
+        "{}",
+        paper_bill.grams
+    );
+    let (_, large_bill) = bill_of("large");
+    assert!(large_bill.grams > paper_bill.grams);
 }
 
 #[test]
-fn the_mass_of_a_file_of_robots_is_that_of_its_bill_in_whole_grams() {
+fn the_mass_in_each_robot_file_is_that_of_its_bill_in_whole_grams() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
     let files = std::fs::read_dir(folder).expect("robots/");
     let paths = files.map(|file| file.expect("a file").path());
-    let mut count = 0;
-    for path in paths.filter(|path| path.extension().is_some_and(|end| end == "toml")) {
+    let mut file_count = 0;
+    for path in paths.filter(|path| {
+        path.extension()
+            .is_some_and(|extension| extension == "toml")
+    }) {
         let name = path
             .file_stem()
             .and_then(|name| name.to_str())
@@ -65,9 +73,9 @@ fn the_mass_of_a_file_of_robots_is_that_of_its_bill_in_whole_grams() {
         let body = assembly.robot().ground().body;
         assert_eq!(body, bill.body_values(), "{name}");
         assert!(!bill.differs_from(&body), "{name}");
-        count += 1;
+        file_count += 1;
     }
-    assert!(count >= 4);
+    assert!(file_count >= 4);
     let (assembly, _) = bill_of("paper");
     assert_eq!(lizard_robot::Body::DEFAULT, assembly.robot().ground().body);
 }
@@ -75,8 +83,8 @@ fn the_mass_of_a_file_of_robots_is_that_of_its_bill_in_whole_grams() {
 #[test]
 fn prices_are_on_every_row_to_buy_and_add_up() {
     let (_, bill) = bill_of("paper");
-    let classes = bill.bought.iter().map(|item| item.price.expect("a class"));
-    assert_eq!(bill.euros, lizard_parts::Price::sum(classes));
+    let price_classes = bill.bought.iter().map(|item| item.price.expect("a class"));
+    assert_eq!(bill.euros, lizard_parts::Price::sum(price_classes));
     assert!(bill.radio.iter().all(|item| item.price.is_some()));
     assert!(bill.printed.iter().all(|item| item.price.is_none()));
     assert!(
@@ -85,8 +93,8 @@ fn prices_are_on_every_row_to_buy_and_add_up() {
         bill.euros
     );
     let text = bill.to_string();
-    let sum = format!("is {} to {} euros", bill.euros[0], bill.euros[1]);
-    assert!(text.contains(&sum), "{text}");
+    let sum_sentence = format!("is {} to {} euros", bill.euros[0], bill.euros[1]);
+    assert!(text.contains(&sum_sentence), "{text}");
     assert_eq!(bill.bought_count("resistor 10 kOhm"), 4);
     assert_eq!(bill.bought_count("terminal strip, 12 ways"), 2);
 }
@@ -95,8 +103,8 @@ fn prices_are_on_every_row_to_buy_and_add_up() {
 fn inputs_are_options_of_the_bill_and_change_neither_sum_nor_mass() {
     let (_, plain_bill) = bill_of("paper");
     assert!(plain_bill.inputs.is_empty() && !plain_bill.to_string().contains("inputs"));
-    let tables = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
-    let (_, bill_with_both) = bill_with("paper", tables);
+    let inputs_toml = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
+    let (_, bill_with_both) = bill_with("paper", inputs_toml);
     let rows: Vec<&str> = bill_with_both
         .inputs
         .iter()
@@ -144,8 +152,8 @@ fn a_mass_centre_is_printed_in_words_and_as_toml() {
 }
 
 #[test]
-fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
-    let (assembly, bill) = bill_with("paper", STRUT);
+fn a_spring_holds_a_leg_against_friction_but_a_caught_foot_stalls_its_servo() {
+    let (assembly, bill) = bill_with("paper", SLOTTED_STRUTS_TOML);
     let hold = bill.hold.expect("springs");
     let strut_length = 28.5f64.hypot(10.0);
     assert!((assembly.layout().legs[0].strut_length - strut_length).abs() < 1e-9);
@@ -159,12 +167,12 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     assert!(lever_at(20.0) - 0.01 < most_lever && most_lever < 22.0);
     assert!((hold.preload - hold.lever[0] * hold.force).abs() < 1e-9);
     assert!(hold.friction * 1.8 < hold.preload);
-    // With foot and body held, the pin reaches the slot's end long before the 40 deg of a walk, at more than seven
-    // tenths of the stall torque of an SG-90.
+    // With foot and body held, the pin reaches the slot's end long before the 40 deg of a walk. The torque there is
+    // more than 0.7 of the stall torque of an SG-90.
     assert!(12.0 < hold.way[0] && hold.way[1] < 25.0, "{:?}", hold.way);
     assert!((131.0..160.0).contains(&hold.end[1]) && !hold.lets_servo_turn());
-    // An independent check of the slot's end from the plan of the leg: there the strut is 5 mm longer, and the torque
-    // is the spring's force times the derivative of the strut's length.
+    // An independent check of the slot's end from the plan of the leg. There the strut is 5 mm longer. The torque is
+    // the spring's force times the derivative of the strut's length by the angle.
     let robot = assembly.robot();
     let stretch_at = |lag: f64| {
         let angle = robot.servos()[1].neutral + 20.0;
@@ -177,12 +185,15 @@ fn a_leg_is_held_against_friction_and_a_caught_foot_spares_no_servo() {
     let force = hold.force + 5.0 * hold.rate;
     assert!((torque / (force * lever_mm) - 1.0).abs() < 1e-4, "{torque}");
     // Only the weakest spring with which the robot still walks lets the servo turn.
-    let (_, weak_bill) = bill_with("paper", &format!("{STRUT}\nforce = 2.0\nrate = 0.2"));
+    let (_, weak_bill) = bill_with(
+        "paper",
+        &format!("{SLOTTED_STRUTS_TOML}\nforce = 2.0\nrate = 0.2"),
+    );
     assert!(weak_bill.hold.expect("springs").lets_servo_turn());
 }
 
 #[test]
-fn a_held_foot_stretches_its_spring_one_way_only() {
+fn a_held_foot_stretches_its_spring_in_one_direction_only() {
     for name in ["paper", "large", "unequal"] {
         let (assembly, _) = bill_of(name);
         let robot = assembly.robot();
@@ -204,7 +215,7 @@ fn a_held_foot_stretches_its_spring_one_way_only() {
 
 #[test]
 fn rigid_struts_are_printed_instead_and_need_no_springs() {
-    let (_, sprung_bill) = bill_with("paper", STRUT);
+    let (_, sprung_bill) = bill_with("paper", SLOTTED_STRUTS_TOML);
     let (assembly, rigid_bill) = bill_with("paper", "");
     assert_eq!(sprung_bill.bought_count("tension spring"), 4);
     assert_eq!(rigid_bill.bought_count("tension spring"), 0);
@@ -220,12 +231,12 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
         items.map(|item| (item.count, item.what.clone())).collect()
     };
     // Each bill lists the other's struts as alternatives.
-    let [slotted, bar] = ["strut", "rigid strut"].map(|name| (4, name.to_owned()));
-    assert_eq!(rows_of(&sprung_bill.instead).first(), Some(&bar));
-    assert_eq!(rows_of(&rigid_bill.instead).first(), Some(&slotted));
+    let [slotted_row, rigid_row] = ["strut", "rigid strut"].map(|name| (4, name.to_owned()));
+    assert_eq!(rows_of(&sprung_bill.instead).first(), Some(&rigid_row));
+    assert_eq!(rows_of(&rigid_bill.instead).first(), Some(&slotted_row));
     assert!(
-        rows_of(&sprung_bill.printed).contains(&slotted)
-            && rows_of(&rigid_bill.printed).contains(&bar)
+        rows_of(&sprung_bill.printed).contains(&slotted_row)
+            && rows_of(&rigid_bill.printed).contains(&rigid_row)
     );
     assert_eq!(rigid_bill.hold, None);
     assert!(!assembly.robot().drive().can_lag());
@@ -238,9 +249,9 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
     }
     let text = sprung_bill.to_string();
     let (_, table) = text.split_once("```toml\n").expect("a table");
-    let (drive, _) = table.split_once("\n\n").expect("the drive");
+    let (drive_toml, _) = table.split_once("\n\n").expect("the drive");
     // The quoted table makes the same robot.
-    let (same_assembly, _) = bill_with("paper", drive);
+    let (same_assembly, _) = bill_with("paper", drive_toml);
     let [expected, actual] =
         [sprung_bill.hold, SpringEffect::of(&same_assembly)].map(|hold| hold.expect("springs"));
     assert!(

@@ -1,4 +1,4 @@
-//! Tests of what matters to a builder: leads, springs, screws on sale, walls, marks, roofs.
+//! Tests of the details that matter to a builder: leads, springs, screws on sale, walls, marks, roofs.
 //!
 //! The outlines of the layers are tested point by point, so the tests do not depend on the shapes that the proof of
 //! fit uses.
@@ -6,20 +6,20 @@
 use lizard_kinematics::{End, Vector};
 use lizard_parts::{Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
 
-use crate::{ROBOTS, assembly, body, slotted};
+use crate::{ROBOTS, assembly, body, slotted_assembly};
 
 fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
 /// Points of a rectangle, given by its centre and size, every 0.3 mm.
-fn points_in_rectangle(middle: Vector, size: Vector) -> Vec<Vector> {
+fn points_in_rectangle(centre: Vector, size: Vector) -> Vec<Vector> {
     let offsets_over = |size: f64| {
         let count = (size / 0.3).ceil() as i32;
         (0..=count).map(move |i| size * (f64::from(i) / f64::from(count) - 0.5))
     };
     let rows = offsets_over(size.x).flat_map(|x| offsets_over(size.y).map(move |y| vector(x, y)));
-    rows.map(|offset| middle + offset).collect()
+    rows.map(|offset| centre + offset).collect()
 }
 
 /// The heights and the outline of each layer.
@@ -35,24 +35,24 @@ fn a_servo_goes_into_the_plate_with_its_lead() {
         let servo = assembly.robot().parts().servo;
         let plate = layers_of(&body(&assembly, "plate").prisms);
         for end in End::ALL {
-            for i in end.servos() {
-                let middle = assembly.layout().plate.case_centres[i];
-                let edge = middle + vector(0.0, end.sign() * servo.length / 2.0);
+            for servo_index in end.servos() {
+                let case_centre = assembly.layout().plate.case_centres[servo_index];
+                let edge = case_centre + vector(0.0, end.sign() * servo.length / 2.0);
                 // The lead's bundle is 4 x 1.2 mm, at the end where the shaft is.
                 let lead =
                     points_in_rectangle(edge + vector(0.0, end.sign() * 0.6), vector(4.0, 1.2));
-                let case = points_in_rectangle(middle, vector(servo.width, servo.length));
+                let case = points_in_rectangle(case_centre, vector(servo.width, servo.length));
                 for (z, outline) in &plate {
                     for point in lead.iter().chain(&case) {
                         assert!(
                             !outline.contains(*point),
                             "{name} A{}: {point:?} {z:?}",
-                            i + 1
+                            servo_index + 1
                         );
                     }
                 }
                 // The shaft is at the same end of the case as the lead.
-                let shaft = assembly.layout().shafts[i];
+                let shaft = assembly.layout().shafts[servo_index];
                 assert!((shaft - edge).length() < servo.shaft + 1e-9);
             }
         }
@@ -83,19 +83,20 @@ fn the_coupon_has_the_openings_of_the_plate() {
 }
 
 #[test]
-fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
+fn a_mounted_coil_has_the_length_between_its_hooks_and_lies_in_its_strut() {
     for name in ROBOTS {
-        let assembly = slotted(name, "");
+        let assembly = slotted_assembly(name, "");
         let parts = assembly.robot().parts();
-        for (i, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
+        for (leg_index, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
             let [spring, strut] =
                 ["spring", "strut"].map(|noun| body(&assembly, &format!("{noun} {leg}")));
             let shape = &spring.prisms[0].filled_shapes[0];
             let x = shape.points.iter().map(|point| point.x);
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
-            // Each hook, with the coil's inner diameter, goes around the far side of an M3 screw.
+            // Each hook has the coil's inner diameter and goes around the outer side of an M3 screw.
             let inner_diameter = parts.spring.outer_diameter - 2.0 * parts.spring.wire_diameter;
-            let hung_length = assembly.layout().legs[i].strut_length + 3.0 - 2.0 * inner_diameter;
+            let hung_length =
+                assembly.layout().legs[leg_index].strut_length + 3.0 - 2.0 * inner_diameter;
             assert!(
                 (length - hung_length).abs() < 1e-9,
                 "{name} {leg}: {length} {hung_length}"
@@ -104,40 +105,40 @@ fn a_hung_coil_is_as_long_as_its_hooks_leave_and_lies_in_its_strut() {
                 assert!((length - 24.5).abs() < 0.01, "{length}");
             }
             let (bottom, top) = (spring.z()[0], spring.z()[1]);
-            let middle = shape.middle();
-            // This also holds when the leg lags as far as the slot allows.
+            let coil_centre = shape.middle();
+            // The coil also lies in its strut when the leg lags as much as the slot allows.
             for lag in [0.0, 2.5, 5.0] {
                 let size = vector(length + lag, parts.spring.outer_diameter);
                 for (z, outline) in layers_of(&strut.prisms) {
                     if z[1] <= bottom || top <= z[0] {
                         continue;
                     }
-                    for point in points_in_rectangle(middle + vector(lag / 2.0, 0.0), size) {
+                    for point in points_in_rectangle(coil_centre + vector(lag / 2.0, 0.0), size) {
                         assert!(!outline.contains(point), "{name} {leg}: {point:?} {z:?}");
                     }
                 }
             }
-            let link = body(&assembly, &format!("link A{}", i + 1));
+            let link = body(&assembly, &format!("link A{}", leg_index + 1));
             assert!(link.z()[0] - top > 0.2, "{name}: {top}");
         }
     }
 }
 
 #[test]
-fn a_coil_that_rides_on_its_strut_is_found() {
-    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
+fn a_coil_that_is_too_high_in_its_strut_is_found() {
+    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "spring LF") {
             body.prisms[0].z = body.prisms[0].z.map(|z| z + 0.6);
         }
     });
     let has_spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
-    let proof = altered.prove_chosen(has_spring, |_, _| ());
+    let proof = altered_assembly.prove_chosen(has_spring, |_, _| ());
     let clash = proof.judge().expect_err("it is too near to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }
 
 #[test]
-fn every_shop_has_the_screws() {
+fn every_screw_has_a_length_that_shops_sell() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
             let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
@@ -158,19 +159,22 @@ fn every_shop_has_the_screws() {
 fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
-        let boss = assembly.stack().servo_bottom + assembly.robot().parts().servo.boss;
+        let boss_z = assembly.stack().servo_bottom + assembly.robot().parts().servo.boss;
         let bodies = assembly.bodies().iter();
         let screws = bodies.filter(|body| matches!(body.kind, Kind::HornScrew(_)));
-        let tips = screws.map(|screw| screw.z()[0]);
-        assert_eq!(tips.clone().count(), 8);
-        assert!(tips.fold(f64::MAX, f64::min) > boss + 0.5, "{name}");
+        let tip_heights = screws.map(|screw| screw.z()[0]);
+        assert_eq!(tip_heights.clone().count(), 8);
+        assert!(
+            tip_heights.fold(f64::MAX, f64::min) > boss_z + 0.5,
+            "{name}"
+        );
     }
 }
 
 /// Points along a loop, every 0.2 mm.
-fn points_along(line: &Loop) -> Vec<Vector> {
+fn points_along(outline_loop: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
-    for (side, end) in line.sides_with_end_points() {
+    for (side, end) in outline_loop.sides_with_end_points() {
         let chord = end - side.from;
         match side.arc(end) {
             None => {
@@ -179,11 +183,11 @@ fn points_along(line: &Loop) -> Vec<Vector> {
                 points.extend((0..count).map(|i| side.from + chord * share_at(i)));
             }
             Some((centre, radius)) => {
-                let whole_angle = 4.0 * side.bulge.atan();
-                let count = (whole_angle.abs() * radius / 0.2).ceil() as u32;
+                let arc_angle = 4.0 * side.bulge.atan();
+                let count = (arc_angle.abs() * radius / 0.2).ceil() as u32;
                 let arm = side.from - centre;
                 points.extend((0..count).map(|i| {
-                    let (sin, cos) = (whole_angle * f64::from(i) / f64::from(count)).sin_cos();
+                    let (sin, cos) = (arc_angle * f64::from(i) / f64::from(count)).sin_cos();
                     centre + arm * cos + arm.rotated_left() * sin
                 }));
             }
@@ -197,9 +201,9 @@ fn thinnest_wall(part: &Part) -> f64 {
     let mut least_mm = f64::INFINITY;
     for prism in &part.prisms {
         for piece in &Outline::of(prism).pieces {
-            let lines: Vec<_> = piece.iter().map(points_along).collect();
-            for (i, a) in lines.iter().enumerate() {
-                for (b, point) in lines[i + 1..]
+            let point_loops: Vec<_> = piece.iter().map(points_along).collect();
+            for (i, a) in point_loops.iter().enumerate() {
+                for (b, point) in point_loops[i + 1..]
                     .iter()
                     .flat_map(|b| a.iter().map(move |p| (b, p)))
                 {
@@ -219,9 +223,9 @@ fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
         let wall = assembly.robot().parts().wall;
         let mut checked_count = 0;
         for part in assembly.parts() {
-            // Thinner walls are intended here: in the plate the servos' own screws are beside their openings, and
-            // the engraved lines of a number beside each other; in a link the horn's screws are beside its hub; a
-            // ring is as thin as the coil beside it requires; a dome tapers to nothing at its hole.
+            // These parts have thinner walls by design. In the plate, the servos' screws are close to the openings, and
+            // the engraved lines of a number are close to each other. In a link, the horn's screws are close to the
+            // hub. The coil limits the thickness of a ring. The dome of a pad tapers to nothing at its hole.
             let exceptions = ["plate", "link", "strut ring", "pad"];
             if exceptions
                 .iter()
@@ -254,16 +258,16 @@ fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
         }
         pocket_count += 1;
         for corner in points_along(hole) {
-            let wall = outer_points.iter().map(|point| (*point - corner).length());
-            let wall = wall.fold(f64::INFINITY, f64::min);
-            assert!(wall > 1.58, "{wall}");
+            let distances = outer_points.iter().map(|point| (*point - corner).length());
+            let wall_mm = distances.fold(f64::INFINITY, f64::min);
+            assert!(wall_mm > 1.58, "{wall_mm}");
         }
     }
     assert_eq!(pocket_count, 2);
 }
 
 #[test]
-fn parts_that_are_alike_but_for_left_and_right_are_marked() {
+fn parts_that_look_alike_have_different_marks() {
     for name in ["paper", "large", "unequal"] {
         let parts = assembly(name, "").parts();
         let noun_of = |part: &Part| {
@@ -282,18 +286,18 @@ fn parts_that_are_alike_but_for_left_and_right_are_marked() {
                 continue;
             }
             marks.push((noun_of(part), part.mark.clone()));
-            // The mark was engraved, so some of the part's material is gone.
-            let (printed, roof_count) = part.printed_layers();
-            let solid = Solid::of(&printed);
+            // The mark is engraved, so some of the part's material is missing.
+            let (printed_layers, roof_count) = part.printed_layers();
+            let solid = Solid::of(&printed_layers);
             let roof_volume = 0.3 * 9.0 * roof_count as f64;
             let max_volume = part.volume() + roof_volume - 0.5;
             assert!(solid.volume < max_volume, "{name}: {}", part.name);
             assert!(Mesh::of(&solid).is_closed(), "{name}: {}", part.name);
         }
-        let count = marks.len();
+        let mark_count = marks.len();
         marks.sort();
         marks.dedup();
-        assert_eq!(marks.len(), count, "{name}: two kinds have one mark");
+        assert_eq!(marks.len(), mark_count, "{name}: two kinds have one mark");
         let has_mark = |part: &str, mark: &str| marks.contains(&(part.to_owned(), mark.to_owned()));
         for (part, mark) in match name {
             "unequal" => [("link", "1"), ("link", "2"), ("crank", "3")],
@@ -309,18 +313,18 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
     for name in ["paper", "large", "unequal"] {
         let mut roof_count = 0;
         for part in assembly(name, "").parts() {
-            let (printed, count) = part.printed_layers();
-            roof_count += count * part.count();
-            for pair in layers_of(&printed).windows(2) {
-                let [([_, end], outline_below), (z, outline)] = pair else {
+            let (printed_layers, part_roof_count) = part.printed_layers();
+            roof_count += part_roof_count * part.count();
+            for pair in layers_of(&printed_layers).windows(2) {
+                let [([_, top_below], outline_below), (z, outline)] = pair else {
                     continue;
                 };
                 let part = &part.name;
-                assert!((end - z[0]).abs() < 1e-9, "{name}: {part}");
+                assert!((top_below - z[0]).abs() < 1e-9, "{name}: {part}");
                 assert!(z[1] > z[0] + 0.01, "{name}: {part}");
-                for line in outline.loops().filter(|line| line.area() < 0.0) {
-                    // Somewhere just beside the hole, the layer below supports this one.
-                    let Some((middle, radius)) = line.circle() else {
+                for hole in outline.loops().filter(|line| line.area() < 0.0) {
+                    // At some point just beside the hole, the layer below supports this layer.
+                    let Some((middle, radius)) = hole.circle() else {
                         continue;
                     };
                     let is_supported = (0..24).any(|i| {

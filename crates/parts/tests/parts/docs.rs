@@ -3,26 +3,26 @@
 use lizard_parts::{Bill, buying_table, places_table, steps};
 use lizard_robot::{Parts, Robot};
 
-use crate::{assembly, neutral};
+use crate::{assembly, neutral_solution};
 
-fn read(path: &str) -> String {
+fn read_file(path: &str) -> String {
     let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).unwrap_or_else(|fault| panic!("{path}: {fault}"))
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
 /// The TOML block of docs/build.md that lists all keys.
-fn toml_block() -> String {
-    let page = read("docs/build.md");
+fn keys_block() -> String {
+    let page = read_file("docs/build.md");
     let blocks = page.split("```toml\n").skip(1);
     let mut blocks = blocks.filter_map(|rest| rest.split("```").next());
-    let keys_block = blocks.find(|block| block.contains("[parts.servo]"));
-    keys_block.expect("a block with [parts.servo]").to_owned()
+    let block = blocks.find(|block| block.contains("[parts.servo]"));
+    block.expect("a block with [parts.servo]").to_owned()
 }
 
 #[test]
-fn the_page_has_the_default_values() {
-    let paper = read("robots/paper.toml");
-    let robot = Robot::parse(&format!("{paper}\n{}", toml_block())).expect("docs/build.md");
+fn the_build_page_has_the_default_values() {
+    let paper = read_file("robots/paper.toml");
+    let robot = Robot::parse(&format!("{paper}\n{}", keys_block())).expect("docs/build.md");
     let paper = Robot::parse(&paper).expect("robots/paper.toml");
     // The foot's position, an optional key, is the one that results from the hips.
     let mut parts = *robot.parts();
@@ -33,12 +33,12 @@ fn the_page_has_the_default_values() {
 }
 
 #[test]
-fn the_page_has_every_key() {
-    let block = toml_block();
-    // The names of all fields, from their debug output; those of the spring are longer than their keys.
-    let printed = format!("{:#?}", Parts::default());
+fn the_build_page_has_every_key() {
+    let block = keys_block();
+    // The names of all fields, from their debug output. Those of the spring are longer than their keys.
+    let debug_text = format!("{:#?}", Parts::default());
     let mut checked_count = 0;
-    for line in printed.lines() {
+    for line in debug_text.lines() {
         let Some((name, value)) = line.trim().split_once(": ") else {
             continue;
         };
@@ -59,14 +59,14 @@ fn the_page_has_every_key() {
         );
         checked_count += 1;
     }
-    assert!(checked_count > 30, "{checked_count} keys of {printed}");
+    assert!(checked_count > 30, "{checked_count} keys of {debug_text}");
 }
 
 /// Compares the text of a page between a start mark and the end mark with `expected`. If BLESS_DOCS is set, writes
 /// `expected` into the page instead.
 fn check_or_write_quote(path: &str, start: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
-    let page = read(path);
+    let page = read_file(path);
     let (text_before, rest) = page.split_once(start).expect(start);
     let (list, text_after) = rest.split_once(END).expect("the list ends");
     if std::env::var_os("BLESS_DOCS").is_some() {
@@ -84,10 +84,14 @@ fn check_or_write_quote(path: &str, start: &str, expected: &str) {
 #[test]
 fn the_pages_quote_the_lists_of_the_bill() {
     let assembly = assembly("paper", "[leg.drive]\nkind = \"rigid\"");
-    let bill = Bill::of(&assembly, &assembly.parts(), &neutral(&assembly));
-    let bought = format!("{}\n{}\n", buying_table(&bill.bought), bill.price_text());
+    let bill = Bill::of(&assembly, &assembly.parts(), &neutral_solution(&assembly));
+    let buying_list = format!("{}\n{}\n", buying_table(&bill.bought), bill.price_text());
     for (path, mark, list) in [
-        ("docs/quickstart.md", "the list of `lizard parts`", &bought),
+        (
+            "docs/quickstart.md",
+            "the list of `lizard parts`",
+            &buying_list,
+        ),
         (
             "docs/quickstart.md",
             "the list for a radio",
@@ -105,7 +109,7 @@ fn the_pages_quote_the_lists_of_the_bill() {
         assert!(bill.to_string().contains(list), "{mark}");
     }
     for word in ["strap", "wire", "switch", "fuse", "strip", "plug"] {
-        assert!(bought.contains(word), "{word}");
+        assert!(buying_list.contains(word), "{word}");
     }
 }
 
@@ -114,23 +118,23 @@ fn the_pages_have_the_mass_of_robot_toml() {
     let mass = assembly("paper", "").robot().ground().body.mass;
     let mass_sentence = format!("The parts weigh {mass:.0} g.");
     assert!(
-        read("docs/twin.md").contains(&mass_sentence),
+        read_file("docs/twin.md").contains(&mass_sentence),
         "docs/twin.md: {mass_sentence}"
     );
-    assert!(read("docs/twin.md").contains(&format!("| mass | {mass:.0} g,")));
+    assert!(read_file("docs/twin.md").contains(&format!("| mass | {mass:.0} g,")));
     let mass_line = format!("\nmass = {mass:.1} ");
     for path in ["robot.toml", "robots/paper.toml", "robots/own-gaits.toml"] {
-        assert!(read(path).contains(&mass_line), "{path}: {mass_line}");
+        assert!(read_file(path).contains(&mass_line), "{path}: {mass_line}");
     }
 }
 
 #[test]
 fn the_quickstart_goes_through_the_steps_of_the_guide_in_their_order() {
-    let page = read("docs/quickstart.md");
+    let page = read_file("docs/quickstart.md");
     let lines = page.lines().filter_map(|line| line.strip_prefix("Guide: "));
     let entries = lines.flat_map(|line| line.trim_end_matches('.').split("; "));
     let entries: Vec<_> = entries.map(str::to_owned).collect();
-    let steps = (1..).zip(steps(false));
-    let expected = steps.map(|(number, step)| format!("step {number}, {}", step.title));
+    let numbered_steps = (1..).zip(steps(false));
+    let expected = numbered_steps.map(|(number, step)| format!("step {number}, {}", step.title));
     assert_eq!(entries, expected.collect::<Vec<_>>());
 }

@@ -1,4 +1,4 @@
-//! Tests of the files' content: lengths from hole to hole, and identical bytes on every run.
+//! Tests of the files' content: distances between holes, and identical bytes on every run.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{Assembly, Body, Loop, Mount, Outline, part_files, sheets};
@@ -6,16 +6,17 @@ use lizard_parts::{Assembly, Body, Loop, Mount, Outline, part_files, sheets};
 use crate::body;
 
 fn assembly(name: &str) -> Assembly {
-    crate::slotted(name, "")
+    crate::slotted_assembly(name, "")
 }
 
-/// The centres, from above, of a body's holes in which an M3 screw turns.
+/// The centres, from above, of a body's clearance holes for M3 screws.
 fn holes_of(body: &Body) -> Vec<(f64, f64)> {
     let mut holes: Vec<(f64, f64)> = Vec::new();
     for prism in &body.prisms {
         for (middle, radius) in Outline::of(prism).loops().filter_map(Loop::circle) {
-            let is_known = |hole: &(f64, f64)| (hole.0 - middle.x).hypot(hole.1 - middle.y) < 1e-6;
-            if (radius - 1.6).abs() < 1e-6 && !holes.iter().any(is_known) {
+            let is_same_hole =
+                |hole: &(f64, f64)| (hole.0 - middle.x).hypot(hole.1 - middle.y) < 1e-6;
+            if (radius - 1.6).abs() < 1e-6 && !holes.iter().any(is_same_hole) {
                 holes.push((middle.x, middle.y));
             }
         }
@@ -23,7 +24,7 @@ fn holes_of(body: &Body) -> Vec<(f64, f64)> {
     holes
 }
 
-/// Checks that some two holes of a body are `mm` apart.
+/// Checks that a body has two holes that are `mm` apart.
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = holes_of(body(assembly, name));
@@ -35,7 +36,7 @@ fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
 }
 
 #[test]
-fn from_hole_to_hole_is_the_length_of_the_link() {
+fn the_distance_between_two_holes_is_the_length_of_the_link() {
     for name in ["paper", "large", "unequal"] {
         let assembly = assembly(name);
         let links = assembly.robot().lizard().links;
@@ -74,7 +75,7 @@ fn from_hole_to_hole_is_the_length_of_the_link() {
 }
 
 #[test]
-fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
+fn a_rigid_strut_has_the_length_of_a_slotted_one_and_lies_within_it() {
     for name in ["paper", "large", "unequal"] {
         let assembly = assembly(name);
         for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.alternatives()) {
@@ -99,7 +100,7 @@ fn a_rigid_strut_is_as_long_as_the_other_from_hole_to_hole_and_within_it() {
 }
 
 #[test]
-fn shafts_and_pivots_of_the_plate_are_where_the_kinematics_has_them() {
+fn the_pivots_of_the_plate_are_where_the_kinematics_has_them() {
     let assembly = assembly("unequal");
     let holes = holes_of(body(&assembly, "plate"));
     for leg in &assembly.layout().legs {

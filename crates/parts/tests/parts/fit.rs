@@ -3,11 +3,11 @@
 
 use lizard_parts::Clearance;
 
-use crate::{ROBOTS, assembly, body, slotted};
+use crate::{ROBOTS, assembly, body, slotted_assembly};
 
 /// The nearest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
-fn nearest_pair(parts: &str) -> Option<Clearance> {
-    let assembly = slotted("paper", parts);
+fn nearest_pair(toml: &str) -> Option<Clearance> {
+    let assembly = slotted_assembly("paper", toml);
     assembly
         .close_pairs(assembly.grid_poses(9), 1.0)
         .into_iter()
@@ -17,7 +17,7 @@ fn nearest_pair(parts: &str) -> Option<Clearance> {
 #[test]
 fn every_robot_has_gaps_between_its_parts() {
     for name in ROBOTS {
-        let assembly = slotted(name, "");
+        let assembly = slotted_assembly(name, "");
         assert!(assembly.grid_poses(10).count() > 100, "{name}");
         let near_pairs = assembly.close_pairs(assembly.grid_poses(10), 0.2);
         assert!(near_pairs.is_empty(), "{name}: {}", near_pairs[0]);
@@ -25,8 +25,8 @@ fn every_robot_has_gaps_between_its_parts() {
 }
 
 #[test]
-fn a_wrong_measure_makes_parts_overlap() {
-    for (parts, first, second) in [
+fn a_wrong_dimension_makes_parts_overlap() {
+    for (toml, first, second) in [
         ("[parts]\nbar = 24.0", "", ""),
         ("[parts]\npivot = [6.25, -4.0]", "", ""),
         ("[parts.servo]\nboss = 20.0", "servo", "strut"),
@@ -34,21 +34,21 @@ fn a_wrong_measure_makes_parts_overlap() {
         ("[parts]\nanchor = [12.0, 5.0]", "", ""),
         ("[parts.screw]\nhead = 14.0\nhead_height = 3.0", "screw", ""),
     ] {
-        let pair = nearest_pair(parts).unwrap_or_else(|| panic!("{parts}: nothing is near"));
-        assert!(pair.mm < 0.0, "{parts}: {pair}");
-        let are_named = pair.first.contains(first) || pair.second.contains(second);
-        assert!(are_named, "{parts}: {pair}");
+        let pair = nearest_pair(toml).unwrap_or_else(|| panic!("{toml}: nothing is near"));
+        assert!(pair.mm < 0.0, "{toml}: {pair}");
+        let is_expected_pair = pair.first.contains(first) || pair.second.contains(second);
+        assert!(is_expected_pair, "{toml}: {pair}");
     }
 }
 
 #[test]
-fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
+fn a_body_is_found_by_its_name_and_has_layers_from_bottom_to_top() {
     let assembly = assembly("unequal", "");
     let mut names: Vec<_> = assembly.bodies().iter().map(|body| &body.name).collect();
     names.sort();
-    let count = names.len();
+    let body_count = names.len();
     names.dedup();
-    assert_eq!(names.len(), count, "two bodies have one name");
+    assert_eq!(names.len(), body_count, "two bodies have one name");
     for body in assembly.bodies() {
         for pair in body.prisms.windows(2) {
             assert_eq!(pair[0].z[1], pair[1].z[0], "{}", body.name);
@@ -67,7 +67,7 @@ fn a_body_is_found_by_its_name_and_has_layers_from_below_to_above() {
 fn pins_meet_the_holes_of_the_parts_that_they_hold() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
-        let mut met_count = 0;
+        let mut hole_count = 0;
         for pose in assembly.grid_poses(5) {
             let bodies = assembly.bodies().iter();
             for screw in bodies.filter(|body| body.name.starts_with("screw ")) {
@@ -81,35 +81,37 @@ fn pins_meet_the_holes_of_the_parts_that_they_hold() {
                     let cuts = held.prisms.iter().flat_map(|prism| &prism.cut_shapes);
                     let holes = cuts.filter(|cut| cut.radius >= shank.radius - 0.3);
                     let errors = holes.map(|hole| (frame.map(hole.points[0]) - centre).length());
-                    let least_mm = errors.fold(f64::INFINITY, f64::min);
+                    let error_mm = errors.fold(f64::INFINITY, f64::min);
                     let (screw, held) = (&screw.name, &held.name);
-                    assert!(least_mm < 1e-9, "{name}: {screw} in {held} {least_mm}");
-                    met_count += 1;
+                    assert!(error_mm < 1e-9, "{name}: {screw} in {held} {error_mm}");
+                    hole_count += 1;
                 }
             }
         }
-        assert!(met_count > 50, "{name}: {met_count} holes");
+        assert!(hole_count > 50, "{name}: {hole_count} holes");
     }
 }
 
 #[test]
 fn a_robot_that_does_not_fit_is_refused_with_one_message() {
-    let bar = "parts.bar is 6 mm, but the head of a screw and a wall on each side need 7.3 mm";
-    let spring = "leg strut LF is 30.2 mm from screw to screw, but its spring is 40.0 mm long";
+    let bar_message =
+        "parts.bar is 6 mm, but the head of a screw and a wall on each side need 7.3 mm";
+    let spring_message =
+        "leg strut LF is 30.2 mm from screw to screw, but its spring is 40.0 mm long";
     // The pivot that the paper's figures suggest is below the servo's link.
     let naive_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
     let near_pivot = "[parts]\npivot = [22.0, 6.0]\n[parts.spring]\nlength = 20.0";
-    for (parts, phrases) in [
+    for (toml, phrases) in [
         (naive_pivot, [" and ", "overlap by"]),
         (near_pivot, ["overlap by", "at pose"]),
-        ("[parts]\nbar = 6.0", [bar, ""]),
+        ("[parts]\nbar = 6.0", [bar_message, ""]),
         ("[parts]\nheight = 15.0", ["the feet need 21.3 mm", ""]),
-        ("[parts.spring]\nlength = 40.0", [spring, ""]),
+        ("[parts.spring]\nlength = 40.0", [spring_message, ""]),
         ("[parts]\nthickness = 15.0", ["do not make one body", ""]),
     ] {
-        let message = slotted("paper", parts)
+        let message = slotted_assembly("paper", toml)
             .check_fit()
-            .expect_err(parts)
+            .expect_err(toml)
             .to_string();
         for phrase in phrases {
             assert!(message.contains(phrase), "{message}");

@@ -1,5 +1,6 @@
 //! Tests of the fittings (supply, strips, plugs): each has a space on the robot, and products that fit into it.
 
+use lizard_kinematics::Vector;
 use lizard_parts::{Assembly, BATTERY_EXAMPLES, Body, Fitting, Kind, Price, Shape, places_table};
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
@@ -13,48 +14,47 @@ fn bodies_of(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
         .collect()
 }
 
-/// Sorts the lengths of a box, the shortest first, so that a product may be turned to fit.
+/// The extents of points along x and y, mm.
+fn extents(points: &[Vector]) -> [f64; 2] {
+    let extent_of = |coordinate_of: fn(&Vector) -> f64| {
+        let coordinates = points.iter().map(coordinate_of);
+        coordinates.clone().fold(f64::MIN, f64::max) - coordinates.fold(f64::MAX, f64::min)
+    };
+    [extent_of(|point| point.x), extent_of(|point| point.y)]
+}
+
+/// Sorts the side lengths of a box, the shortest first, so that a product may be turned to fit.
 fn sort_lengths(mut size: [f64; 3]) -> [f64; 3] {
     size.sort_by(f64::total_cmp);
     size
 }
 
 #[test]
-fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
+fn both_products_named_for_a_fitting_fit_into_the_space_of_its_body() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         for fitting in Fitting::ALL {
             let facts = fitting.facts();
             let bodies = bodies_of(&assembly, fitting);
-            let count = if fitting == Fitting::Resistor { 4 } else { 1 };
-            assert_eq!(bodies.len(), count, "{name}: {}", facts.name);
+            let expected_count = if fitting == Fitting::Resistor { 4 } else { 1 };
+            assert_eq!(bodies.len(), expected_count, "{name}: {}", facts.name);
             // A strap goes around other parts, so it has no box.
             if fitting == Fitting::Strap {
                 continue;
             }
             for body in bodies {
-                let points = body
-                    .prisms
-                    .iter()
-                    .flat_map(|prism| &prism.filled_shapes[0].points);
-                let extent_of = |coordinate_of: fn(&lizard_kinematics::Vector) -> f64| {
-                    let coordinates = points.clone().map(coordinate_of);
-                    coordinates.clone().fold(f64::MIN, f64::max)
-                        - coordinates.fold(f64::MAX, f64::min)
-                };
+                let shapes = body.prisms.iter().map(|prism| &prism.filled_shapes[0]);
+                let points: Vec<_> = shapes.flat_map(|shape| shape.points.clone()).collect();
+                let [width, length] = extents(&points);
                 let [low, high] = body.z();
-                let room = sort_lengths([
-                    extent_of(|point| point.x),
-                    extent_of(|point| point.y),
-                    high - low,
-                ]);
+                let space = sort_lengths([width, length, high - low]);
                 for product in facts.examples {
                     let size = sort_lengths(product.size);
                     let fits = size
                         .iter()
-                        .zip(room)
+                        .zip(space)
                         .all(|(length, limit)| *length <= limit + 1e-9);
-                    assert!(fits, "{product} in {room:?}");
+                    assert!(fits, "{product} in {space:?}");
                 }
             }
         }
@@ -62,18 +62,18 @@ fn both_products_named_for_a_fitting_go_into_the_room_of_its_body() {
 }
 
 #[test]
-fn both_batteries_that_are_named_go_into_the_room_of_every_robots_battery() {
+fn both_named_batteries_fit_into_the_space_of_every_robots_battery() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
-        let room = assembly.robot().parts().battery;
+        let space = assembly.robot().parts().battery;
         for product in BATTERY_EXAMPLES {
             let fits = product
                 .size
                 .iter()
-                .zip(room)
+                .zip(space)
                 .all(|(length, limit)| *length <= limit);
-            assert!(fits, "{name}: {product} in {room:?}");
-            assert!(places_table(room).contains(product.name));
+            assert!(fits, "{name}: {product} in {space:?}");
+            assert!(places_table(space).contains(product.name));
         }
         // A space into which no known battery fits lists no battery.
         assert!(!places_table([20.0, 30.0, 10.0]).contains(BATTERY_EXAMPLES[0].name));
@@ -90,13 +90,16 @@ fn screws_and_nuts_that_are_drawn_have_the_sizes_of_their_standards() {
 }
 
 #[test]
-fn a_size_of_which_no_drawing_was_found_is_marked() {
-    let [by_data_sheet, usual] = Fitting::RadioSpace.facts().examples;
+fn a_product_size_without_a_drawing_is_marked_as_approximate() {
+    let [by_data_sheet, approximate] = Fitting::RadioSpace.facts().examples;
     assert_eq!(
         by_data_sheet.to_string(),
         "HM-10, bare board: 13 x 27 x 2.2"
     );
-    assert!(usual.to_string().ends_with(": ~16 x 37 x 7"), "{usual}");
+    assert!(
+        approximate.to_string().ends_with(": ~16 x 37 x 7"),
+        "{approximate}"
+    );
 }
 
 #[test]
@@ -105,38 +108,22 @@ fn a_radio_module_of_either_common_size_has_a_place() {
     let [body] = bodies_of(&assembly, Fitting::RadioSpace)[..] else {
         panic!("one place")
     };
-    let xs = body.prisms[0].filled_shapes[0]
-        .points
-        .iter()
-        .map(|point| point.x);
-    let ys = body.prisms[0].filled_shapes[0]
-        .points
-        .iter()
-        .map(|point| point.y);
-    let extent_of = |coordinates: Vec<f64>| {
-        coordinates.iter().copied().fold(f64::MIN, f64::max)
-            - coordinates.iter().copied().fold(f64::MAX, f64::min)
-    };
-    let (width, length) = (extent_of(xs.collect()), extent_of(ys.collect()));
+    let [width, length] = extents(&body.prisms[0].filled_shapes[0].points);
     assert!(width >= 16.0 && length >= 37.0, "{width} {length}");
 }
 
 #[test]
-fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
-    // Cable ties go through the deck beside the parts that they hold, so no fitting covers a slot.
+fn no_fitting_covers_a_slot_for_a_cable_tie() {
+    // Cable ties go through the deck beside the parts that they hold.
     let assembly = assembly("paper", "");
     let deck = assembly.body("deck").expect("a deck");
     let is_slot = |cut: &&Shape| {
-        let extent_of = |coordinate_of: fn(&lizard_kinematics::Vector) -> f64| {
-            let coordinates = cut.points.iter().map(coordinate_of);
-            coordinates.clone().fold(f64::MIN, f64::max) - coordinates.fold(f64::MAX, f64::min)
-        };
-        let width_mm =
-            extent_of(|point| point.x).min(extent_of(|point| point.y)) + 2.0 * cut.radius;
+        let [along_x, along_y] = extents(&cut.points);
+        let width_mm = along_x.min(along_y) + 2.0 * cut.radius;
         cut.points.len() > 1 && (1.9..2.1).contains(&width_mm)
     };
     let slots = deck.prisms[0].cut_shapes.iter().filter(is_slot);
-    let mut count = 0;
+    let mut slot_count = 0;
     for slot in slots {
         for body in assembly.bodies() {
             if !matches!(body.kind, Kind::Fitting(_)) || body.z()[0] < deck.z()[0] {
@@ -147,10 +134,10 @@ fn a_tie_slot_has_a_wall_on_each_side_and_nothing_stands_in_the_ties_way() {
                 assert!(distance > 0.05, "{}: {distance}", body.name);
             }
         }
-        count += 1;
+        slot_count += 1;
     }
     assert_eq!(
-        count, 5,
+        slot_count, 5,
         "two for signals, two for the fuse, one for the switch"
     );
 }
@@ -173,7 +160,7 @@ fn the_fuse_carries_what_the_converter_draws_and_the_list_names_both_ratings() {
 }
 
 #[test]
-fn price_classes_follow_each_other_and_their_sum_is_that_of_their_ends() {
+fn price_classes_adjoin_and_their_sum_adds_up_their_limits() {
     for pair in Price::ALL.windows(2) {
         assert_eq!(pair[0].euros()[1], pair[1].euros()[0]);
     }

@@ -19,14 +19,14 @@ mod pads;
 mod proof;
 mod surface;
 
-/// The files of robots/ except [`GRAIN`].
+/// The files of robots/ except [`GRAIN_ROBOT`].
 const ROBOTS: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
 /// The file of robots/ whose parts equal the paper's except for the pads, as a test shows.
-const GRAIN: &str = "grain";
+const GRAIN_ROBOT: &str = "grain";
 
-/// The lines of robot.toml that give the legs slotted struts.
-const STRUT: &str = "[leg.drive]\nkind = \"strut\"";
+/// The lines of robot.toml for slotted struts of the legs.
+const SLOTTED_STRUTS_TOML: &str = "[leg.drive]\nkind = \"strut\"";
 
 /// The robot of a file of robots/, with more lines of TOML appended.
 fn robot_with(name: &str, more_toml: &str) -> Robot {
@@ -36,23 +36,19 @@ fn robot_with(name: &str, more_toml: &str) -> Robot {
         .unwrap_or_else(|error| panic!("{name} with {more_toml}: {error}"))
 }
 
-/// The assembly of a file of robots/, with more lines appended.
+/// The assembly of a file of robots/, with more lines of TOML appended.
 fn assembly(name: &str, more_toml: &str) -> Assembly {
     Assembly::new(&robot_with(name, more_toml))
 }
 
-/// The assembly of a file of robots/, with slotted struts, which are wider than the default.
-fn slotted(name: &str, more_toml: &str) -> Assembly {
-    assembly(name, &format!("{STRUT}\n{more_toml}"))
+/// The assembly of a file of robots/ with slotted struts, which are wider than the default, and more lines of TOML.
+fn slotted_assembly(name: &str, more_toml: &str) -> Assembly {
+    assembly(name, &format!("{SLOTTED_STRUTS_TOML}\n{more_toml}"))
 }
 
 /// The positions of the robot's joints at neutral.
-fn neutral(assembly: &Assembly) -> Solution {
-    let robot = assembly.robot();
-    robot
-        .lizard()
-        .solve(&robot.neutral_pose())
-        .expect("neutral")
+fn neutral_solution(assembly: &Assembly) -> Solution {
+    mjcf_reader::neutral_solution(assembly.robot())
 }
 
 /// The body with a given name.

@@ -8,19 +8,19 @@ use lizard_robot::Robot;
 use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 use roxmltree::{Document, Node};
 
-use crate::mjcf_masses::weighed;
-use crate::mjcf_reader::{bodies, child, elements, mjcf_with, neutral, numbers};
-use crate::{GRAIN, ROBOTS, robot_with};
+use crate::mjcf_masses::mass_and_centre;
+use crate::mjcf_reader::{bodies, child, mjcf_with, neutral_solution, numbers, section_elements};
+use crate::{GRAIN_ROBOT, ROBOTS, robot_with};
 
 fn robot(name: &str) -> Robot {
     robot_with(name, "")
 }
 
 #[test]
-fn its_loops_are_closed_where_the_robots_joints_are() {
+fn loops_are_closed_where_the_robots_joints_are() {
     for name in ROBOTS {
         let robot = robot(name);
-        let solution = neutral(&robot);
+        let solution = neutral_solution(&robot);
         let angles: [f64; 4] = robot.neutral_pose().into();
         let legs = [0, 1, 2, 3].map(|i| robot.legs()[i].place_at(angles[i], angles[i]));
         let shafts = robot.lizard().shafts();
@@ -29,8 +29,8 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
             joints.insert(format!("end {}", end.name()), solution.point(end));
         }
         for side in Side::ALL {
-            let rear = shafts[side.servos()[1]];
-            let tip = rear + solution.side(side).front_tip;
+            let rear_shaft = shafts[side.servos()[1]];
+            let tip = rear_shaft + solution.side(side).front_tip;
             joints.insert(format!("slider {}", side.name()), tip);
         }
         for (leg, leg_points) in LEG_NAMES.iter().zip(&legs) {
@@ -38,17 +38,17 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
             joints.insert(format!("leg anchor {leg}"), leg_points.strut_anchors[1]);
         }
         let (force, rate) = (4.0, 0.4);
-        for pull in [
+        for strut_spring in [
             None,
             Some(StrutSpring {
                 preload: force,
                 rate,
             }),
         ] {
-            let text = mjcf_with(&robot, |scene| scene.strut_spring = pull);
+            let text = mjcf_with(&robot, |scene| scene.strut_spring = strut_spring);
             let document = Document::parse(&text).expect("well formed");
             let bodies_by_name = bodies(&document);
-            let loops = elements(&document, "equality");
+            let loops = section_elements(&document, "equality");
             assert_eq!(loops.len(), joints.len());
             for connect in loops {
                 let attribute_of = |attribute: &str| connect.attribute(attribute).expect(attribute);
@@ -64,7 +64,7 @@ fn its_loops_are_closed_where_the_robots_joints_are() {
 }
 
 #[test]
-fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
+fn each_foot_stands_where_the_contact_model_has_it_and_a_longer_foot_is_lower() {
     for name in ROBOTS {
         let robot = robot(name);
         let text = mjcf_with(&robot, |scene| scene.excess_lengths = [0.0, 0.6, 0.0, -0.3]);
@@ -93,14 +93,14 @@ fn each_foot_stands_where_the_contact_model_has_it_and_a_long_one_is_lower() {
 }
 
 #[test]
-fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() {
-    let normal_mass = weighed(&mjcf_with(&robot("paper"), |_| {}));
-    let light_mass = weighed(&mjcf_with(&robot("paper"), |scene| {
+fn pads_of_other_shapes_touch_the_floor_and_light_limbs_keep_the_robots_mass() {
+    let (normal_mass, _) = mass_and_centre(&mjcf_with(&robot("paper"), |_| {}));
+    let (light_mass, _) = mass_and_centre(&mjcf_with(&robot("paper"), |scene| {
         scene.limb_mass_factor = 0.2
     }));
     assert!(
-        (normal_mass.0 - light_mass.0).abs() < 1e-3,
-        "{normal_mass:?} {light_mass:?}"
+        (normal_mass - light_mass).abs() < 1e-3,
+        "{normal_mass} {light_mass}"
     );
     let radius = robot("paper").parts().pad.radius;
     for (pads, count) in [
@@ -126,17 +126,17 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
                 .point(&numbers(*geom, "pos"))
                 .map(|coordinate| 1000.0 * coordinate);
             let half_height = 1000.0 * size[size.len() - 1];
-            let floor = 0.1 * layer as f64;
+            let expected_bottom = 0.1 * layer as f64;
             assert!(
-                (z - half_height - floor).abs() < 1e-5,
+                (z - half_height - expected_bottom).abs() < 1e-5,
                 "{pads:?} {layer}: {z} {half_height}"
             );
             if let Pads::Terraces(_) = pads {
-                // Pythagoras: the rim of the disc's middle plane is on the ball of the dome.
-                let from_middle = (1000.0 * size[0]).hypot(radius - z);
+                // The rim of the disc's middle plane is on the dome's sphere.
+                let centre_distance = (1000.0 * size[0]).hypot(radius - z);
                 assert!(
-                    (from_middle - radius).abs() < 1e-3,
-                    "{layer}: {from_middle}"
+                    (centre_distance - radius).abs() < 1e-3,
+                    "{layer}: {centre_distance}"
                 );
             }
         }
@@ -144,7 +144,7 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_leave_the_robots_mass() 
 }
 
 #[test]
-fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
+fn a_floor_has_its_blocks_its_slope_and_its_friction_on_each_pad() {
     let text = mjcf_with(&robot("paper"), |scene| {
         let (centre, size) = ([20.0, 300.0], [10.0, 40.0, 2.0]);
         let rotation_deg = 30.0;
@@ -193,7 +193,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_grip_on_each_pad() {
 }
 
 #[test]
-fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
+fn the_sphere_that_touches_the_floor_is_that_of_the_pads_dome() {
     let assembly = Assembly::new(&robot("paper"));
     let pad = assembly.body("pad LF").expect("a pad");
     let text = mjcf_with(&robot("paper"), |_| ());
@@ -201,15 +201,15 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
     let mut nodes = document
         .descendants()
         .filter(|node| node.has_tag_name("geom"));
-    let ball = nodes.find(|node| node.attribute("name") == Some("pad LF"));
-    let radius = 1000.0 * numbers(ball.expect("a ball"), "size")[0];
+    let sphere = nodes.find(|node| node.attribute("name") == Some("pad LF"));
+    let radius = 1000.0 * numbers(sphere.expect("a sphere"), "size")[0];
     let parts = assembly.parts();
     let part = parts.iter().find(|part| part.body_names[0] == pad.name);
     let (layers, _) = part.expect("a pad to print").printed_layers();
     let mesh = Mesh::of(&Solid::of(&layers));
     // The printed pad lies on its back, centred on the origin; in the middle is the hole for the screw.
     let top = mesh.corners.iter().fold(0.0, |top, [.., z]| z.max(top));
-    let (mut lowest, mut count) = (top, 0);
+    let (mut lowest, mut triangle_count) = (top, 0);
     for triangle in &mesh.triangles {
         let corners = triangle.map(|corner| mesh.corners[corner]);
         let axis_distances = corners.map(|[x, y, _]| x.hypot(y));
@@ -217,12 +217,12 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
         if are_on_dome == [false; 3] {
             continue;
         }
-        count += 1;
+        triangle_count += 1;
         for ([.., z], axis_distance) in corners.into_iter().zip(axis_distances) {
-            let ball_z = top - radius + (radius.powi(2) - axis_distance.powi(2)).sqrt();
+            let sphere_z = top - radius + (radius.powi(2) - axis_distance.powi(2)).sqrt();
             assert!(
-                (z - ball_z).abs() < 0.002,
-                "{z} where the ball has {ball_z}"
+                (z - sphere_z).abs() < 0.002,
+                "{z} where the sphere has {sphere_z}"
             );
             lowest = lowest.min(z);
         }
@@ -231,17 +231,17 @@ fn the_ball_that_touches_the_floor_is_that_of_the_pads_dome() {
             [0, 1, 2].map(|i| b[i] - a[i]),
             [0, 1, 2].map(|i| c[i] - a[i]),
         );
-        assert!(ux * vy - uy * vx > 1e-6, "upright, an edge: {corners:?}");
+        assert!(ux * vy - uy * vx > 1e-6, "a vertical triangle: {corners:?}");
     }
     assert!(
-        count > 1000 && top - lowest > 1.9,
+        triangle_count > 1000 && top - lowest > 1.9,
         "a dome of {} mm",
         top - lowest
     );
 }
 
 #[test]
-fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
+fn a_slotted_strut_pulls_with_its_springs_force_and_yields_in_one_direction() {
     let (force, rate) = (4.0, 0.4);
     let text = mjcf_with(&robot("paper"), |scene| {
         scene.strut_spring = Some(StrutSpring {
@@ -274,12 +274,12 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_one_way() {
 }
 
 #[test]
-fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
+fn a_servo_has_its_stall_torque_its_largest_rate_and_its_travel() {
     for play in [0.0, 1.0] {
         let robot = robot("unequal");
         let text = mjcf_with(&robot, |scene| scene.play = play);
         let document = Document::parse(&text).expect("well formed");
-        let motors = elements(&document, "actuator");
+        let motors = section_elements(&document, "actuator");
         for (servo, motor) in motors.iter().enumerate() {
             assert_eq!(motor.attribute("name"), Some(SERVO_NAMES[servo]));
             let joint_name = motor.attribute("joint").expect("a joint");
@@ -308,22 +308,22 @@ fn a_servo_turns_no_faster_and_no_stronger_than_it_can() {
 }
 
 #[test]
-fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
+fn servos_and_joints_are_those_of_the_robot_file() {
     let text = include_str!("../../../../robots/paper.toml").replace(
         "[servo.A1]",
         "[joints]\ndrag = 17.0\nslider = 0.5\n[servo]\nmodel = \"copy\"\nvolts = 4.2\nspin_up_ms = 10.0\n[servo.A1]",
     );
-    let robot = Robot::parse(&text).expect("right");
+    let robot = Robot::parse(&text).expect("a valid robot");
     let text = mjcf_with(&robot, |_| {});
     let document = Document::parse(&text).expect("well formed");
     let joints: Vec<Node> = document
         .descendants()
         .filter(|node| node.has_tag_name("joint"))
         .collect();
-    let friction_of = |name: &str| -> Vec<f64> {
+    let friction_of = |name_prefix: &str| -> Vec<f64> {
         let matching_joints = joints.iter().filter(|node| {
             let node_name = node.attribute("name").unwrap_or_default();
-            node_name.starts_with(name)
+            node_name.starts_with(name_prefix)
         });
         matching_joints
             .map(|node| numbers(*node, "frictionloss")[0])
@@ -340,7 +340,7 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
     let damping = 0.012 * 9.80665 / 400f64.to_radians();
     assert!((numbers(*link, "damping")[0] - damping).abs() < 1e-8);
     assert!((numbers(*link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
-    let motor = elements(&document, "actuator")[0];
+    let motor = section_elements(&document, "actuator")[0];
     let max_torque = numbers(motor, "forcerange")[1];
     assert!(
         (max_torque - 0.012 * 9.80665 * 4.2 / 4.8).abs() < 1e-6,
@@ -349,7 +349,7 @@ fn servos_and_joints_of_a_robot_file_are_those_of_the_engine() {
 }
 
 #[test]
-fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
+fn a_course_has_the_angles_of_its_gait_and_the_times_of_its_last_cycle() {
     let robot = robot("own-gaits");
     let gait = robot.gait("stride").expect("stride");
     let course = Course::of(&robot, gait, 2, 1);
@@ -364,7 +364,7 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
     };
     assert!((cycle_start - start).abs() < 1e-9 && cycle_length == period && period == 0.91);
     assert_eq!(cycle_count, 1.0);
-    let mut keys = elements(&document, "keyframe");
+    let mut keys = section_elements(&document, "keyframe");
     let home = keys.pop().and_then(|key| key.attribute("name"));
     assert_eq!(home, Some("home"));
     let last_time = numbers(*keys.last().expect("frames"), "time")[0];
@@ -386,8 +386,8 @@ fn a_course_has_the_angles_of_the_firmwares_tables_and_tells_its_last_cycle() {
 }
 
 #[test]
-fn the_file_says_how_much_harder_its_pads_slide_backward() {
-    for (name, ratio) in [("paper", 1.0), ("unequal", 1.15), (GRAIN, 1.5)] {
+fn the_file_has_the_ratio_of_backward_to_forward_friction() {
+    for (name, ratio) in [("paper", 1.0), ("unequal", 1.15), (GRAIN_ROBOT, 1.5)] {
         let text = mjcf_with(&robot(name), |_| {});
         let document = Document::parse(&text).expect("well formed");
         let mut nodes = document.descendants();
@@ -398,7 +398,7 @@ fn the_file_says_how_much_harder_its_pads_slide_backward() {
 }
 
 #[test]
-fn a_name_may_hold_any_character() {
+fn a_model_name_may_contain_any_character() {
     let name = "a <b> & \"c\".toml";
     let text = mjcf_with(&robot("paper"), |scene| scene.name = name.to_owned());
     let document = Document::parse(&text).expect("well formed");

@@ -5,11 +5,11 @@ use lizard_robot::Robot;
 use lizard_robot::servo::LEG_NAMES;
 use roxmltree::Document;
 
-use crate::mjcf_reader::{bodies, child, mjcf_with, neutral, numbers};
+use crate::mjcf_reader::{bodies, child, mjcf_with, neutral_solution, numbers};
 use crate::{ROBOTS, robot_with};
 
 /// The mass of all bodies of a MuJoCo file together, g, and their mass centre: forward, left, above the plate, mm.
-pub fn weighed(text: &str) -> (f64, [f64; 3]) {
+pub fn mass_and_centre(text: &str) -> (f64, [f64; 3]) {
     let document = Document::parse(text).expect("well formed");
     let (mut mass, mut moment) = (0.0, [0.0; 3]);
     let bodies_by_name = bodies(&document);
@@ -23,9 +23,9 @@ pub fn weighed(text: &str) -> (f64, [f64; 3]) {
             *sum += grams * coordinate * 1000.0;
         }
     }
-    let plate = 1000.0 * bodies_by_name["chassis"].0.at[2];
+    let plate_height = 1000.0 * bodies_by_name["chassis"].0.position[2];
     let [right, forward, up] = moment.map(|component| component / mass);
-    (mass, [forward, -right, up - plate])
+    (mass, [forward, -right, up - plate_height])
 }
 
 /// The robot of a file with its mass, g, and its mass centre, mm, replaced.
@@ -39,7 +39,7 @@ fn robot_with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
 }
 
 #[test]
-fn its_bodies_weigh_what_robot_toml_says_and_where() {
+fn mass_and_mass_centre_are_those_of_robot_toml() {
     for name in ROBOTS {
         let body = robot_with(name, "").ground().body;
         for (mass, centre) in [
@@ -48,9 +48,9 @@ fn its_bodies_weigh_what_robot_toml_says_and_where() {
             (350.0, [-15.0, 0.0]),
         ] {
             let robot = robot_with_body(name, mass, centre);
-            let bill = Bill::of(&Assembly::new(&robot), &[], &neutral(&robot));
-            let (grams, [ahead, left, up]) = weighed(&mjcf_with(&robot, |_| {}));
-            // The mesh replaces each arc by chords, which cut off a little volume.
+            let bill = Bill::of(&Assembly::new(&robot), &[], &neutral_solution(&robot));
+            let (grams, [ahead, left, up]) = mass_and_centre(&mjcf_with(&robot, |_| {}));
+            // The mesh replaces each arc by chords, so it loses a little volume.
             assert!((grams / mass - 1.0).abs() < 2e-3, "{name} {grams} {mass}");
             let error = (ahead - centre[0]).hypot(left - centre[1]);
             assert!(error < 0.05, "{name} {ahead} {left} {centre:?}");

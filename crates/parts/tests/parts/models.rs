@@ -1,5 +1,5 @@
-//! Tests with an XML parser that the bodies in the URDF and SDF files equal those in the MuJoCo file. The tests of
-//! `scripts/models-test` use parsers by other authors, and close the loops at other poses than neutral.
+//! Tests that the bodies in the URDF and SDF files equal those in the MuJoCo file. The tests of `scripts/models-test`
+//! use parsers by other authors, and also close the loops at other poses than neutral.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 use lizard_robot::servo::SERVO_NAMES;
 use roxmltree::{Document, Node};
 
-use crate::mjcf_reader::{Placed, bodies, child, mjcf_with, neutral, numbers};
+use crate::mjcf_reader::{Placement, bodies, child, mjcf_with, neutral_solution, numbers};
 use crate::{ROBOTS, robot_with};
 
 /// The URDF and the SDF file of a robot whose scene is changed by `change`, and the names of their mesh files.
@@ -17,14 +17,14 @@ fn urdf_and_sdf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2],
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
     change(&mut scene);
-    let pieces = Pieces::of(&assembly, &scene).expect("it is made");
-    let neutral = neutral(robot);
+    let pieces = Pieces::of(&assembly, &scene).expect("pieces");
+    let solution = neutral_solution(robot);
     let names = pieces.meshes(&scene).into_iter().map(|mesh| mesh.path);
-    let text = [
-        pieces.urdf(&neutral, &scene, "at/"),
-        pieces.sdf(&neutral, &scene, "at/"),
+    let texts = [
+        pieces.urdf(&solution, &scene, "at/"),
+        pieces.sdf(&solution, &scene, "at/"),
     ];
-    (text, names.collect())
+    (texts, names.collect())
 }
 
 /// The text in the first child element with a tag.
@@ -51,22 +51,22 @@ fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Nod
 }
 
 /// A body: placement, mass, mass centre, and inertia as xx, yy, zz, xy, xz, yz.
-type ReadBody = (Placed, f64, Vec<f64>, Vec<f64>);
+type ReadBody = (Placement, f64, Vec<f64>, Vec<f64>);
 
-/// The placement of a frame that is given relative to another one by six numbers: x, y, z, roll, pitch, yaw.
-fn frame_on(frame: Placed, pose: &[f64]) -> Placed {
-    assert_eq!(pose[3..5], [0.0; 2], "it stays upright");
-    Placed {
-        at: frame.point(&pose[..3]),
-        turn: frame.turn + pose[5],
+/// The placement of a frame whose pose on `frame` is given by six numbers: x, y, z, roll, pitch, yaw.
+fn frame_on(frame: Placement, pose: &[f64]) -> Placement {
+    assert_eq!(pose[3..5], [0.0; 2], "the frame stays upright");
+    Placement {
+        position: frame.point(&pose[..3]),
+        rotation: frame.rotation + pose[5],
     }
 }
 
-const WORLD: Placed = Placed {
-    at: [0.0; 3],
-    turn: 0.0,
+const WORLD: Placement = Placement {
+    position: [0.0; 3],
+    rotation: 0.0,
 };
-const INERTIA: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+const INERTIA_KEYS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// The bodies of a URDF file by name. Each is placed by the joints from the root to its link.
 fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
@@ -105,7 +105,7 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
             );
             continue;
         };
-        let inertia = INERTIA.map(|key| numbers(child(inertial, "inertia"), key)[0]);
+        let inertia = INERTIA_KEYS.map(|key| numbers(child(inertial, "inertia"), key)[0]);
         let mass = numbers(child(inertial, "mass"), "value")[0];
         let centre = numbers(child(inertial, "origin"), "xyz");
         read_bodies.insert(
@@ -120,7 +120,7 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
 fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
     let model = child(document.root_element(), "model");
     let links = elements_by_name(model, "link");
-    fn placement_of<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placed {
+    fn placement_of<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placement {
         let pose = child(links[name], "pose");
         let frame = pose.attribute("relative_to");
         let frame = frame.map_or(WORLD, |parent| placement_of(links, parent));
@@ -130,7 +130,7 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
     for (name, link) in &links {
         let inertial = child(*link, "inertial");
         let inertia_node = child(inertial, "inertia");
-        let inertia = INERTIA.map(|name| parse_floats(&text_of(inertia_node, name))[0]);
+        let inertia = INERTIA_KEYS.map(|name| parse_floats(&text_of(inertia_node, name))[0]);
         let mass = parse_floats(&text_of(inertial, "mass"))[0];
         let centre = parse_floats(&text_of(inertial, "pose"))[..3].to_vec();
         read_bodies.insert(
@@ -142,10 +142,10 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
 }
 
 #[test]
-fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
+fn urdf_and_sdf_have_the_bodies_of_the_mujoco_file_with_x_forward() {
     let (force, rate) = (4.0, 0.4);
     for name in ROBOTS {
-        for (pull, play) in [
+        for (strut_spring, play) in [
             (None, 0.0),
             (
                 Some(StrutSpring {
@@ -156,7 +156,8 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
             ),
         ] {
             let robot = robot_with(name, "");
-            let change = |scene: &mut Scene| (scene.strut_spring, scene.play) = (pull, play);
+            let change =
+                |scene: &mut Scene| (scene.strut_spring, scene.play) = (strut_spring, play);
             let text = mjcf_with(&robot, change);
             let document = Document::parse(&text).expect("well formed");
             let expected = bodies(&document);
@@ -172,14 +173,14 @@ fn their_bodies_are_those_of_mujocos_file_turned_ahead() {
                     assert_eq!(*centre, numbers(inertial, "pos"), "{name}");
                     assert_eq!(*inertia, numbers(inertial, "fullinertia"), "{name}");
                     // The x axis in URDF and SDF is the y axis in MuJoCo's file.
-                    let [x, y, z] = expected_placement.at;
-                    for (actual, expected) in read_placement.at.into_iter().zip([y, -x, z]) {
+                    let [x, y, z] = expected_placement.position;
+                    for (actual, expected) in read_placement.position.into_iter().zip([y, -x, z]) {
                         assert!(
                             (actual - expected).abs() < 1e-8,
                             "{name} {actual} {expected}"
                         );
                     }
-                    let angle = read_placement.turn - expected_placement.turn + FRAC_PI_2;
+                    let angle = read_placement.rotation - expected_placement.rotation + FRAC_PI_2;
                     let error = angle.sin().hypot(1.0 - angle.cos());
                     assert!(error < 1e-8, "{name} {angle}");
                 }
@@ -205,7 +206,7 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
                 .0
                 .point(&numbers(child(joint, "origin"), "xyz"))
         };
-        let mut count = 0;
+        let mut joint_count = 0;
         for joint_name in joints
             .keys()
             .filter_map(|name| name.strip_suffix("_1_joint"))
@@ -214,14 +215,14 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
                 ["1", "2"].map(|number| point_of(&format!("{joint_name}_{number}")));
             let error = (first_point[0] - second_point[0]).hypot(first_point[1] - second_point[1]);
             assert!(error < 1e-8, "{name} {joint_name} {error}");
-            count += 1;
+            joint_count += 1;
         }
-        assert_eq!(count, 12, "two ends, two sliders, two for each leg");
+        assert_eq!(joint_count, 12, "two ends, two sliders, two for each leg");
     }
 }
 
 #[test]
-fn servos_have_their_names_ranges_and_powers_in_both() {
+fn servos_have_their_names_ranges_torques_and_rates_in_urdf_and_sdf() {
     let robot = robot_with("unequal", "");
     let ([urdf, sdf], _) = urdf_and_sdf(&robot, |_| {});
     let [urdf, sdf] = [&urdf, &sdf].map(|text| Document::parse(text).expect("well formed"));
@@ -258,18 +259,18 @@ fn servos_have_their_names_ranges_and_powers_in_both() {
 }
 
 #[test]
-fn every_mesh_that_they_name_is_made_and_none_is_left_over() {
+fn every_mesh_named_in_urdf_and_sdf_is_made_and_no_other() {
     let (texts, meshes) = urdf_and_sdf(&robot_with("paper", ""), |_| {});
     for text in &texts {
         let document = Document::parse(text).expect("well formed");
         let urdf_names = document
             .descendants()
             .filter_map(|node| node.attribute("filename"));
-        let sdf_nodes = document
+        let uri_nodes = document
             .descendants()
             .filter(|node| node.has_tag_name("uri"));
         let mesh_names: BTreeSet<String> = urdf_names
-            .chain(sdf_nodes.filter_map(|node| node.text()))
+            .chain(uri_nodes.filter_map(|node| node.text()))
             .map(|name| name.strip_prefix("at/").expect("the folder").to_owned())
             .collect();
         assert_eq!(mesh_names, meshes);

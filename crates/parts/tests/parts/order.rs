@@ -5,7 +5,7 @@ use lizard_parts::{
     Assembly, Body, BuildProblem, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, steps,
 };
 
-use crate::{ROBOTS, assembly, neutral, slotted};
+use crate::{ROBOTS, assembly, neutral_solution, slotted_assembly};
 
 /// The steps of the guide for a robot's kind of struts.
 fn steps_of(assembly: &Assembly) -> Vec<Step> {
@@ -19,17 +19,20 @@ fn every_screw_of_every_robot_can_be_reached() {
             let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let access_poses = assembly.access_poses(&steps_of(&assembly));
             let access_poses = access_poses.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
-            // At neutral the follower covers a screw of its foot; the leg, still on the bench, is swung aside. In
-            // the robot `unequal`, the short arm of a strut's anchor is above the servo's seat, where no socket
-            // reaches the anchor's nut; the link is turned.
+            // At neutral the follower covers a screw of its foot, so the leg, which is still on the bench, is swung
+            // aside. In the robot `unequal`, the short arm of a strut's anchor is above the servo's seat, where no
+            // socket reaches the anchor's nut. So the link is turned.
             for access_pose in access_poses {
-                let screw = match access_pose.step {
+                let expected_prefix = match access_pose.step {
                     7 => "screw foot",
                     9 if name == "unequal" => "screw anchor",
                     _ => panic!("{name}: {access_pose:?}"),
                 };
                 for screw_name in access_pose.screws {
-                    assert!(screw_name.starts_with(screw), "{name}: {screw_name}");
+                    assert!(
+                        screw_name.starts_with(expected_prefix),
+                        "{name}: {screw_name}"
+                    );
                 }
             }
         }
@@ -39,10 +42,10 @@ fn every_screw_of_every_robot_can_be_reached() {
 /// The blocked screws of the paper's robot with changed steps, each with the body in its way; without the screws of
 /// the feet, which are blocked at neutral in any order.
 fn blocked_screws(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
-    let assembly = slotted("paper", "");
+    let assembly = slotted_assembly("paper", "");
     let mut steps = steps_of(&assembly);
     change(&mut steps);
-    let blocked_screws = assembly.blocked_screws(&steps, &neutral(&assembly));
+    let blocked_screws = assembly.blocked_screws(&steps, &neutral_solution(&assembly));
     let screws = blocked_screws
         .into_iter()
         .map(|blocked| (blocked.screw, blocked.operation, blocked.obstacle));
@@ -72,7 +75,7 @@ fn a_wrong_order_is_found() {
 
 #[test]
 fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
-    let glued_assembly = slotted("paper", "").with_changed_bodies(|bodies| {
+    let glued_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let is_pad = |body: &&mut Body| body.name == "pad LF";
         for body in bodies.iter_mut().filter(is_pad) {
             body.prisms[0].cut_shapes.clear();
@@ -90,7 +93,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
     let steps = steps_of(&glued_assembly);
     let level_step = steps.iter().position(|step| step.title == "Level the feet");
     let level_step = 1 + level_step.expect("a step");
-    let blocked_screws = glued_assembly.blocked_screws(&steps, &neutral(&glued_assembly));
+    let blocked_screws = glued_assembly.blocked_screws(&steps, &neutral_solution(&glued_assembly));
     let is_pad_blocking = |step| {
         blocked_screws
             .iter()
@@ -104,15 +107,15 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
 
 #[test]
 fn a_strut_under_a_head_is_found() {
-    // Replaces hexagonal heads, which pockets hold, by heads that a key must hold from below.
-    let unequal = slotted("unequal", "").with_changed_bodies(|bodies| {
+    // Hexagonal heads, which pockets hold, are replaced by heads that a key must hold from below.
+    let altered_assembly = slotted_assembly("unequal", "").with_changed_bodies(|bodies| {
         for body in bodies {
             if let Kind::HexScrew(length) = body.kind {
                 body.kind = Kind::Screw(length);
             }
         }
     });
-    let blocked_screw = unequal.access_poses(&steps_of(&unequal));
+    let blocked_screw = altered_assembly.access_poses(&steps_of(&altered_assembly));
     let blocked_screw = blocked_screw.expect_err("no key gets there");
     assert_eq!(
         (&*blocked_screw.screw, blocked_screw.operation),
@@ -122,8 +125,8 @@ fn a_strut_under_a_head_is_found() {
 }
 
 #[test]
-fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
-    let covered_assembly = slotted("paper", "").with_changed_bodies(|bodies| {
+fn a_robot_with_a_screw_that_is_covered_at_every_pose_is_refused() {
+    let covered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         // A board as large as the plate, above the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
         let mut lid = plate.expect("a plate");
@@ -144,12 +147,16 @@ fn a_screw_that_nothing_lets_pass_refuses_the_robot() {
 }
 
 #[test]
-fn parts_that_move_together_are_not_in_one_place() {
+fn parts_that_move_together_do_not_overlap() {
     for name in ROBOTS {
-        assert_eq!(slotted(name, "").check_dimensions(), Ok(()), "{name}");
+        assert_eq!(
+            slotted_assembly(name, "").check_dimensions(),
+            Ok(()),
+            "{name}"
+        );
     }
     // The head of a standoff's screw is moved into the boss of the board's screw.
-    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
+    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let is_screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(is_screw) {
             let heads = body
@@ -159,7 +166,7 @@ fn parts_that_move_together_are_not_in_one_place() {
             heads.for_each(|shape| shape.points[0].y -= 1.0);
         }
     });
-    let message = altered
+    let message = altered_assembly
         .check_dimensions()
         .expect_err("they overlap")
         .to_string();
@@ -171,8 +178,8 @@ fn parts_that_move_together_are_not_in_one_place() {
 #[test]
 fn above_a_head_that_can_be_reached_there_is_no_material() {
     for name in ["paper", "unequal"] {
-        let assembly = slotted(name, "");
-        let pose = neutral(&assembly);
+        let assembly = slotted_assembly(name, "");
+        let pose = neutral_solution(&assembly);
         let steps = steps_of(&assembly);
         let blocked_screws = assembly.blocked_screws(&steps, &pose);
         let step_of = |body: &Body| steps.iter().position(|step| step.adds(body));
@@ -206,11 +213,11 @@ fn above_a_head_that_can_be_reached_there_is_no_material() {
                 for height_step in 1..60 {
                     let z = high.z[1] + 0.5 * f64::from(height_step);
                     let is_later = |body: &Body| step_of(body) > screw_step;
-                    let is_own =
+                    let is_ignored =
                         |body: &Body| body.name == screw.name || body.name.starts_with("board");
                     for (body, layers) in outlines
                         .iter()
-                        .filter(|(body, _)| !is_later(body) && !is_own(body))
+                        .filter(|(body, _)| !is_later(body) && !is_ignored(body))
                     {
                         let point = assembly.place(body.mount, &pose).unmap(rim);
                         for (prism, outline) in body.prisms.iter().zip(layers) {

@@ -4,7 +4,7 @@ use lizard_kinematics::Vector;
 use lizard_parts::{Bill, Outline, Part, Shape, documents};
 use lizard_robot::servo::LEG_NAMES;
 
-use crate::{GRAIN, assembly, body, neutral};
+use crate::{GRAIN_ROBOT, assembly, body, neutral_solution};
 
 /// The notch of a pad, its only hole with corners; `None` for a plain pad.
 fn notch_of(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
@@ -13,8 +13,8 @@ fn notch_of(prisms: &[lizard_parts::Prism]) -> Option<&Shape> {
 }
 
 #[test]
-fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
-    let assembly = assembly(GRAIN, "");
+fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
+    let assembly = assembly(GRAIN_ROBOT, "");
     let half_width = assembly.robot().parts().pad.width / 2.0;
     let parts = assembly.parts();
     let is_pad = |part: &&Part| part.is_rubbery;
@@ -59,30 +59,30 @@ fn the_notches_of_all_four_pads_as_printed_and_put_on_point_to_the_head() {
 }
 
 #[test]
-fn a_pad_for_a_strip_lies_within_a_plain_one_and_is_as_high() {
-    let [plain, marked] = ["paper", GRAIN].map(|name| assembly(name, ""));
+fn a_pad_for_a_strip_lies_within_a_plain_pad_and_is_as_high() {
+    let [plain, notched] = ["paper", GRAIN_ROBOT].map(|name| assembly(name, ""));
     for leg in LEG_NAMES {
-        let [plain, marked] =
-            [&plain, &marked].map(|assembly| body(assembly, &format!("pad {leg}")));
-        assert_eq!(plain.z(), marked.z());
+        let [plain, notched] =
+            [&plain, &notched].map(|assembly| body(assembly, &format!("pad {leg}")));
+        assert_eq!(plain.z(), notched.z());
         assert!(notch_of(&plain.prisms).is_none());
-        assert_eq!(plain.prisms.len(), marked.prisms.len());
+        assert_eq!(plain.prisms.len(), notched.prisms.len());
         let mut notched_count = 0;
-        for (plain, marked) in plain.prisms.iter().zip(&marked.prisms) {
-            assert_eq!(plain.z, marked.z);
+        for (plain, notched) in plain.prisms.iter().zip(&notched.prisms) {
+            assert_eq!(plain.z, notched.z);
             let radius_of = |prism: &lizard_parts::Prism, end: usize| {
                 prism.filled_shapes[0].radius - prism.inset[end]
             };
             for end in [0, 1] {
-                let excess = radius_of(marked, end) - radius_of(plain, end);
+                let excess = radius_of(notched, end) - radius_of(plain, end);
                 assert!((-0.3..1e-9).contains(&excess), "{leg}: {excess}");
             }
-            if marked.cut_shapes.len() > plain.cut_shapes.len() {
-                let [marked_area, plain_area] =
-                    [marked, plain].map(|prism| Outline::of(prism).area());
+            if notched.cut_shapes.len() > plain.cut_shapes.len() {
+                let [notched_area, plain_area] =
+                    [notched, plain].map(|prism| Outline::of(prism).area());
                 assert!(
-                    marked_area < plain_area - 1.0,
-                    "{leg}: {marked_area} {plain_area}"
+                    notched_area < plain_area - 1.0,
+                    "{leg}: {notched_area} {plain_area}"
                 );
                 notched_count += 1;
             }
@@ -99,7 +99,7 @@ fn a_strip_that_its_pad_cannot_carry_is_refused() {
         let refusal = assembly
             .check_dimensions()
             .err()
-            .map(|refused| refused.to_string());
+            .map(|problem| problem.to_string());
         assert_eq!(refusal.is_none(), fits, "{width}");
         assert!(refusal.is_none_or(|message| message.starts_with("parts.strip is")));
     }
@@ -107,9 +107,9 @@ fn a_strip_that_its_pad_cannot_carry_is_refused() {
 
 #[test]
 fn the_guide_of_a_robot_with_strips_says_how_they_are_glued_and_turned() {
-    for (name, has_strip) in [("paper", false), (GRAIN, true)] {
+    for (name, has_strip) in [("paper", false), (GRAIN_ROBOT, true)] {
         let assembly = assembly(name, "");
-        let pose = neutral(&assembly);
+        let pose = neutral_solution(&assembly);
         let bill = Bill::of(&assembly, &assembly.parts(), &pose);
         let strips = bill
             .inputs

@@ -7,7 +7,7 @@ use lizard_kinematics::{Side, Solution, Vector};
 use lizard_parts::{Assembly, Body, Clash, FAR_MM, MIN_GAP_MM, Mount, Shape};
 use lizard_robot::Robot;
 
-use crate::{GRAIN, ROBOTS, assembly, body, slotted};
+use crate::{GRAIN_ROBOT, ROBOTS, assembly, body, slotted_assembly};
 
 /// Pseudo-random numbers from 0 to 1, the same in every run.
 struct Random(u64);
@@ -29,23 +29,24 @@ fn accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
     let mut poses = Vec::new();
     let neutral = robot.servos().map(|servo| servo.neutral);
     while poses.len() < count {
-        let far_angles = robot.servos().each_ref().map(|servo| {
+        let random_angles = robot.servos().each_ref().map(|servo| {
             let (low, high) = servo.travel();
             servo.neutral + low + (high - low) * random.next()
         });
-        poses.extend(robot.solve_if_allowed(far_angles));
+        poses.extend(robot.solve_if_allowed(random_angles));
         let (mut accepted_share, mut refused_share) = (0.0, 1.0);
         for _ in 0..30 {
             let share = (accepted_share + refused_share) / 2.0;
             let angle_of =
-                |servo: usize| neutral[servo] + share * (far_angles[servo] - neutral[servo]);
+                |servo: usize| neutral[servo] + share * (random_angles[servo] - neutral[servo]);
             match robot.solve_if_allowed([0, 1, 2, 3].map(angle_of)) {
                 Some(_) => accepted_share = share,
                 None => refused_share = share,
             }
         }
-        let angle_of =
-            |servo: usize| neutral[servo] + accepted_share * (far_angles[servo] - neutral[servo]);
+        let angle_of = |servo: usize| {
+            neutral[servo] + accepted_share * (random_angles[servo] - neutral[servo])
+        };
         poses.extend(robot.solve_if_allowed([0, 1, 2, 3].map(angle_of)));
     }
     poses
@@ -53,7 +54,7 @@ fn accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
 
 /// Proves that a robot file fits, and compares the bounds with the distances at many poses.
 fn assert_bounds_hold(name: &str) {
-    let assembly = slotted(name, "");
+    let assembly = slotted_assembly(name, "");
     let proof = assembly.prove(|_, _| ());
     assert_eq!(proof.judge(), Ok(()), "{name}");
     let mounts_of = |first: &str, second: &str| {
@@ -106,11 +107,11 @@ fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
 
 #[test]
 fn rigid_struts_keep_the_distances_of_slotted_ones() {
-    let [sprung_gap, rigid_gap] = ["strut", "rigid"].map(|word| {
-        let assembly = assembly("paper", &format!("[leg.drive]\nkind = \"{word}\""));
+    let [sprung_gap, rigid_gap] = ["strut", "rigid"].map(|kind| {
+        let assembly = assembly("paper", &format!("[leg.drive]\nkind = \"{kind}\""));
         let is_strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
         let proof = assembly.prove_chosen(|a, b| is_strut(a) || is_strut(b), |_, _| ());
-        assert_eq!(proof.judge(), Ok(()), "{word}");
+        assert_eq!(proof.judge(), Ok(()), "{kind}");
         proof
             .nearest_separate_pair()
             .expect("something is near")
@@ -121,7 +122,7 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
 
 #[test]
 fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
-    let paper = slotted("paper", "");
+    let paper = slotted_assembly("paper", "");
     let without_pads = |assembly: Assembly| {
         assembly.with_changed_bodies(|bodies| {
             bodies.retain(|body| body.kind != lizard_parts::Kind::Pad)
@@ -129,8 +130,11 @@ fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
     };
     // The pads of `grain` are not compared: they lie within plain pads, as the tests in `pads.rs` show.
     for (assembly, paper) in [
-        (slotted("own-gaits", ""), paper.clone()),
-        (without_pads(slotted(GRAIN, "")), without_pads(paper)),
+        (slotted_assembly("own-gaits", ""), paper.clone()),
+        (
+            without_pads(slotted_assembly(GRAIN_ROBOT, "")),
+            without_pads(paper),
+        ),
     ] {
         assert_eq!(assembly.bodies(), paper.bodies());
         assert_eq!(assembly.robot().limits(), paper.robot().limits());
@@ -146,11 +150,11 @@ fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
 }
 
 #[test]
-fn every_file_of_robots_is_here() {
+fn every_file_of_robots_is_tested() {
     let folder = format!("{}/../../robots", env!("CARGO_MANIFEST_DIR"));
     let files = std::fs::read_dir(folder).expect("robots/");
     let names = files.map(|file| file.expect("a file").file_name());
-    let expected = ROBOTS.into_iter().chain([GRAIN]);
+    let expected = ROBOTS.into_iter().chain([GRAIN_ROBOT]);
     let expected = expected.map(|name| format!("{name}.toml").into());
     assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(expected));
 }
@@ -174,14 +178,14 @@ fn assert_overlap(clash: Clash, first: &str, second: &str) {
 }
 
 #[test]
-fn a_wrong_measure_is_found() {
-    for (parts, prefix, first, second) in [
+fn a_wrong_dimension_is_found() {
+    for (parts_line, prefix, first, second) in [
         ("bar = 20.0", "link", "link A", ""),
         ("pivot = [22.0, 6.0]", "crank", "crank", "plate"),
     ] {
-        let altered = slotted("paper", &format!("[parts]\n{parts}"));
+        let altered_assembly = slotted_assembly("paper", &format!("[parts]\n{parts_line}"));
         assert_overlap(
-            find_clash(&altered, |body| body.name.starts_with(prefix)),
+            find_clash(&altered_assembly, |body| body.name.starts_with(prefix)),
             first,
             second,
         );
@@ -190,7 +194,7 @@ fn a_wrong_measure_is_found() {
 
 #[test]
 fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
-    let proof = slotted("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
+    let proof = slotted_assembly("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
     let Err(Clash::Overlap(clearance)) = proof.judge() else {
         panic!("no overlap");
     };
@@ -199,14 +203,14 @@ fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
 }
 
 /// The paper's robot with one screw made longer by `extra_mm`.
-fn with_longer_screw(name: &str, extra_mm: f64, is_downwards: bool) -> Assembly {
-    slotted("paper", "").with_changed_bodies(|bodies| {
+fn with_longer_screw(name: &str, extra_mm: f64, extends_down: bool) -> Assembly {
+    slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let mut bodies = bodies.iter_mut();
         let screw = bodies.find(|body| body.name == name).expect(name);
         let width_of = |body: &Body, i: usize| body.prisms[i].filled_shapes[0].diameter();
         let shank = usize::from(width_of(screw, 1) < width_of(screw, 0));
         let z = &mut screw.prisms[shank].z;
-        if is_downwards {
+        if extends_down {
             z[0] -= extra_mm;
         } else {
             z[1] += extra_mm;
@@ -216,22 +220,26 @@ fn with_longer_screw(name: &str, extra_mm: f64, is_downwards: bool) -> Assembly 
 
 #[test]
 fn a_screw_that_is_too_long_is_found() {
-    for (name, extra_mm, is_downwards, other) in [
+    for (name, extra_mm, extends_down, obstacle) in [
         ("screw tip A1", 8.0, true, "strut LF"),
         ("screw foot LF 2", 3.0, false, "follower LF"),
         ("screw crank pivot LF", 6.5, false, "screw arm A1"),
         ("screw height LF", 26.0, false, "crank LF"),
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {
-        let altered = with_longer_screw(name, extra_mm, is_downwards);
-        assert_overlap(find_clash(&altered, |body| body.name == name), name, other);
+        let altered_assembly = with_longer_screw(name, extra_mm, extends_down);
+        assert_overlap(
+            find_clash(&altered_assembly, |body| body.name == name),
+            name,
+            obstacle,
+        );
     }
 }
 
 #[test]
 fn swapped_layers_are_found() {
     // The layers of the head's upper and lower coupler are swapped.
-    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
+    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let index_of = |name: &str| {
             bodies
                 .iter()
@@ -243,13 +251,13 @@ fn swapped_layers_are_found() {
         bodies[lower_index].prisms[0].z = bodies[upper_index].prisms[0].z;
         bodies[upper_index].prisms[0].z = z;
     });
-    let clash = find_clash(&altered, |body| body.name.starts_with("coupler"));
+    let clash = find_clash(&altered_assembly, |body| body.name.starts_with("coupler"));
     assert_overlap(clash, "coupler A", "");
 }
 
 #[test]
 fn a_hole_beside_its_pin_is_found() {
-    let altered = slotted("paper", "").with_changed_bodies(|bodies| {
+    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
             for cut in &mut body.prisms[0].cut_shapes {
                 for point in &mut cut.points {
@@ -258,7 +266,8 @@ fn a_hole_beside_its_pin_is_found() {
             }
         }
     });
-    let Clash::Overlap(clearance) = find_clash(&altered, |body| body.name == "coupler A4") else {
+    let Clash::Overlap(clearance) = find_clash(&altered_assembly, |body| body.name == "coupler A4")
+    else {
         panic!("no overlap");
     };
     assert!((clearance.mm + 0.2).abs() < 0.02, "{clearance}");
@@ -268,8 +277,8 @@ fn a_hole_beside_its_pin_is_found() {
 #[test]
 fn parts_that_come_too_near_are_refused_with_their_pose() {
     // At the end of the rotation that the guard allows, the strut comes close to the servo's screws.
-    let altered = slotted("paper", "[parts]\nanchor = [22.0, 5.0]");
-    let clash = find_clash(&altered, |body| body.name.starts_with("strut"));
+    let altered_assembly = slotted_assembly("paper", "[parts]\nanchor = [22.0, 5.0]");
+    let clash = find_clash(&altered_assembly, |body| body.name.starts_with("strut"));
     let message = clash.to_string();
     assert!(message.contains("strut"), "{message}");
     assert!(message.contains(" pose "), "{message}");
@@ -285,7 +294,7 @@ fn extent_along_x(shape: &Shape, shift_mm: f64) -> [f64; 2] {
 #[test]
 fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
     for name in ["paper", "large", "unequal"] {
-        let assembly = slotted(name, "");
+        let assembly = slotted_assembly(name, "");
         let (lizard, limits) = (assembly.robot().lizard(), assembly.robot().limits());
         for side in Side::ALL {
             let slider = lizard.side(side);
@@ -311,7 +320,7 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
         let is_sleeve_and_rod =
             |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
         let proof = assembly.prove_chosen(is_sleeve_and_rod, |_, _| ());
-        // In the bore, each side of the rod has a clearance of 0.2 mm.
+        // Each side of the rod has a clearance of 0.2 mm in the bore.
         assert_eq!(proof.touching_pairs.len(), 2);
         for pair in &proof.touching_pairs {
             let gap = pair.seen.as_ref().expect("they are near").mm;
@@ -321,17 +330,17 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
 }
 
 #[test]
-fn a_struts_screw_has_air_in_its_slot_all_the_way() {
-    let assembly = slotted("paper", "");
+fn a_struts_screw_has_clearance_along_its_whole_slot() {
+    let assembly = slotted_assembly("paper", "");
     let strut = body(&assembly, "strut LF");
     let leg = assembly.layout().legs[0];
     let screw_radius = assembly.robot().parts().screw.diameter / 2.0;
-    let is_own = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
+    let is_at_screw = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
     let mut slots = strut.prisms[0]
         .cut_shapes
         .iter()
         .filter(|cut| cut.points.len() == 2);
-    let slot = slots.find(is_own).expect("a slot");
+    let slot = slots.find(is_at_screw).expect("a slot");
     for step in 0..=10 {
         let travel = 5.0 * f64::from(step) / 10.0;
         let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw_radius);
@@ -343,6 +352,6 @@ fn a_struts_screw_has_air_in_its_slot_all_the_way() {
 }
 
 #[test]
-fn the_least_distance_exceeds_a_printers_error() {
-    assert!(MIN_GAP_MM >= slotted("paper", "").robot().parts().fit);
+fn the_least_distance_is_at_least_a_printers_error() {
+    assert!(MIN_GAP_MM >= slotted_assembly("paper", "").robot().parts().fit);
 }

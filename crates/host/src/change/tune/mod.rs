@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{SpreadArgs, Spreads};
-use crate::shared::suggestion::did_you_mean;
+use crate::shared::spread::{SpreadArgs, Spreadable};
+use crate::shared::suggestion::suggestion_text;
 
 /// Search for a gait that walks faster with the same servo rate
 ///
@@ -67,10 +67,10 @@ pub struct Args {
     spread: SpreadArgs,
 }
 
-impl Spreads for Args {
+impl Spreadable for Args {
     const COMMAND: &'static str = "tune";
 
-    fn spread(&mut self) -> &mut SpreadArgs {
+    fn spread_args(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }
@@ -124,7 +124,7 @@ fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, 
         Failure::Input(format!(
             "robot.toml has no gait `{name}` to surpass; --gait takes one of {}{}",
             gaits.join(", "),
-            did_you_mean(name, gaits)
+            suggestion_text(name, gaits)
         ))
     })
 }
@@ -184,7 +184,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
                 parameters,
             })
     });
-    let best = tuning.best(scored.collect());
+    let best = tuning.build_best(scored.collect());
     best.map(Some).ok_or_else(|| {
         let rate = tuning.rate();
         Failure::Impossible(format!(
@@ -224,7 +224,7 @@ mod tests {
         let (walk, tuned) = (&comparison.gait, &comparison.tuned);
         assert!(tuned.rate <= walk.rate, "{tuned:?}");
         assert!(tuned.speeds[0] > 1.15 * walk.speeds[0], "{comparison:?}");
-        assert!(comparison.faster >= 195, "{comparison:?}");
+        assert!(comparison.faster_count >= 195, "{comparison:?}");
         // The printed text may be appended to a robot.toml, and its gait walks as predicted.
         let mut printed = Vec::new();
         report::print(&comparison, &mut printed).expect("a vector takes it");

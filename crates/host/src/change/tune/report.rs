@@ -11,8 +11,8 @@ use lizard_tune::{Comparison, SPREAD_TEXT};
 pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let Comparison {
         unit,
-        robots,
-        faster,
+        robot_count: robots,
+        faster_count: faster,
         ..
     } = comparison;
     let (gait, tuned) = (&comparison.gait.name, &comparison.tuned.name);

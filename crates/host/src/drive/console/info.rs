@@ -92,7 +92,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let (mut board, banner) = finder.open_and_greet()?;
     let result = BoardInfo::ask(board.name.clone(), banner.as_deref(), &mut board.link);
     let answers = result.map_err(|error| board.failure(&error))?;
-    json::print_json_or(args.json, &answers, || answers.text())
+    json::print_json_or_text(args.json, &answers, || answers.text())
 }
 
 impl BoardInfo {

@@ -107,7 +107,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         firmware,
         robot,
     };
-    json::print_json_or(args.json, &report, || format!("{banner}\n"))
+    json::print_json_or_text(args.json, &report, || format!("{banner}\n"))
 }
 
 /// Chooses the port of the board to write.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::progress::progress_bar;
-use crate::shared::spread::{SpreadArgs, Spreads};
+use crate::shared::spread::{SpreadArgs, Spreadable};
 
 /// Prove that no two parts meet at any pose that the guard accepts
 ///
@@ -33,10 +33,10 @@ pub struct Args {
     spread: SpreadArgs,
 }
 
-impl Spreads for Args {
+impl Spreadable for Args {
     const COMMAND: &'static str = "fit";
 
-    fn spread(&mut self) -> &mut SpreadArgs {
+    fn spread_args(&mut self) -> &mut SpreadArgs {
         &mut self.spread
     }
 }

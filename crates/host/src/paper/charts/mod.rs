@@ -19,7 +19,7 @@ use crate::{Failure, PoseArgs, RobotFile};
 
 /// Step of the grid of the performance charts, in units of D.
 const GRID_STEP: f64 = 0.005;
-/// Number of rings at which an inscribed circle of the performance charts is sampled.
+/// Number of rings on which the performance charts sample each inscribed circle.
 const RING_COUNT: usize = 16;
 
 /// Draw all charts into a folder, as SVG.

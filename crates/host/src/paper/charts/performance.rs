@@ -42,7 +42,7 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         "Performance charts of the five-bar",
         "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no design; ring: the paper's design",
     );
-    for (i, (name, value_of, max, digits)) in panels.into_iter().enumerate() {
+    for (i, (name, value_of, max, decimals)) in panels.into_iter().enumerate() {
         let plot = Plot {
             corner: (90.0 + 480.0 * i as f64, 150.0),
             size: (PANEL_SIZE, PANEL_SIZE),
@@ -93,7 +93,7 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
             (plot.corner.0 + PANEL_SIZE + 20.0, 150.0),
             PANEL_SIZE,
             "",
-            digits,
+            decimals,
         );
     }
     svg_page(PAGE_SIZE, group)

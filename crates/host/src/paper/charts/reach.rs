@@ -1,6 +1,6 @@
 //! The chart of the workspaces of tail, body and legs, seen from above.
 //!
-//! The paper draws the workspace of the head and says that those of tail, body and legs can be plotted likewise.
+//! The paper plots only the head's workspace, and says that the other workspaces can be plotted in the same way.
 //! The tail's workspace mirrors the head's. A slider has no end point, so its middle is plotted. A foot has one degree
 //! of freedom, so its workspace is an arc.
 
@@ -64,7 +64,7 @@ pub fn draw_workspaces(robot: &Robot) -> String {
             (slider_cells.contains(&cell), SLIDER_COLOURS[1]),
             (tail_cells.contains(&cell), TAIL_COLOURS[1]),
             (linkage_cells.contains(&cell), SLIDER_COLOURS[0]),
-            (is_in_tail(robot, point), TAIL_COLOURS[0]),
+            (is_in_tail_workspace(robot, point), TAIL_COLOURS[0]),
         ];
         colours
             .into_iter()
@@ -158,8 +158,8 @@ fn turned_angles(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|servo| neutral[servo] + turns[servo])
 }
 
-/// The solutions that the guard accepts, for all pairs of turns in steps of 1 degree. `turns` returns the turns of
-/// all servos for a pair.
+/// The solutions that the guard accepts, for all pairs of turns in steps of 1 degree. `turns` converts a pair into the
+/// turns of all four servos.
 fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
     let turn_range = || (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from);
     let pairs = turn_range().flat_map(|a| turn_range().map(move |b| (a, b)));
@@ -177,8 +177,8 @@ fn accepted_tail_cells(robot: &Robot) -> Cells {
         .collect()
 }
 
-/// The cells that the middles of both sliders reach in mirror-symmetric poses. The guard accepts the widest range of
-/// head and tail angles in such poses.
+/// The cells that the middles of both sliders reach in poses that the guard accepts. Only mirror-symmetric poses are
+/// tried, because in these poses the guard accepts the widest range of angles.
 fn accepted_slider_cells(robot: &Robot) -> Cells {
     let solutions = accepted_solutions(robot, |a, b| [a, -a, -b, b]);
     let points = solutions.iter().flat_map(|solution| {
@@ -198,7 +198,7 @@ fn slider_middle(robot: &Robot, side: Side, rear_tip: Vector, front_tip: Vector)
     robot.lizard().shafts()[side.servos()[1]] + (rear_tip + front_tip) * 0.5
 }
 
-/// The cells of the middles of both sliders for all angles of their arms at which the travel is within the stroke.
+/// The cells that the middles of both sliders reach at all arm angles with the travel within the stroke.
 fn linkage_slider_cells(robot: &Robot) -> Cells {
     let limits = robot.limits();
     let mut cells = Cells::new();
@@ -220,8 +220,8 @@ fn linkage_slider_cells(robot: &Robot) -> Cells {
     cells
 }
 
-/// True if a point of the chassis frame is behind the tail's base and both arms reach it.
-fn is_in_tail(robot: &Robot, point: Vector) -> bool {
+/// True if a point, in the chassis frame, is behind the tail's base and within reach of both arms.
+fn is_in_tail_workspace(robot: &Robot, point: Vector) -> bool {
     let [left, right] = End::Tail.servos();
     let shafts = robot.lizard().shafts();
     let offset = point - (shafts[left] + shafts[right]) * 0.5;
@@ -229,8 +229,8 @@ fn is_in_tail(robot: &Robot, point: Vector) -> bool {
     local_point.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(local_point)
 }
 
-/// The positions of a foot while only its servo turns from neutral. With `is_guarded`, leaves out positions that the
-/// guard refuses.
+/// The positions of a foot if only its servo turns from neutral. With `is_guarded`, positions that the guard refuses
+/// are omitted.
 fn foot_positions(
     robot: &Robot,
     servo: usize,
@@ -278,7 +278,10 @@ mod tests {
         let solutions = accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(solutions.len() > 300, "{}", solutions.len());
         for solution in solutions {
-            assert!(is_in_tail(&robot, solution.tail_point()), "{solution:?}");
+            assert!(
+                is_in_tail_workspace(&robot, solution.tail_point()),
+                "{solution:?}"
+            );
         }
         let (accepted_cells, linkage_cells) =
             (accepted_slider_cells(&robot), linkage_slider_cells(&robot));
@@ -296,7 +299,9 @@ mod tests {
         let coordinate = |i: i32| f64::from(i) - 160.5;
         let points =
             (0..321).flat_map(|i| (0..321).map(move |j| Vector::new(coordinate(i), coordinate(j))));
-        let area = points.filter(|point| is_in_tail(&robot, *point)).count() as f64;
+        let area = points
+            .filter(|point| is_in_tail_workspace(&robot, *point))
+            .count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
         // The middle of a slider is half the sum of two arms of 30 mm, so it lies in a disc with a radius of 30 mm.
         for (x, y) in linkage_slider_cells(&robot) {

@@ -12,8 +12,8 @@ use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, dra
 const PAGE_SIZE: (f64, f64) = (1500.0, 860.0);
 /// Range of the angles in the left panel, deg.
 const ANGLE_RANGE: (f64, f64) = (0.0, 180.0);
-/// Colours and dashes of the paths: Okabe and Ito's colours, and other dark colours. Dashes distinguish paths whose
-/// colours look alike.
+/// Colours and dashes of the paths: colours of Okabe and Ito, and other dark colours. Dashes distinguish paths of
+/// similar colours.
 const PATH_STYLES: [(&str, &str); 10] = [
     ("#000000", ""),
     ("#d55e00", ""),
@@ -65,12 +65,12 @@ pub fn draw_singularities(robot: &Robot) -> String {
     }
     group = draw_singular_curves(group, &left_plot, robot);
     // The left panel shows the outline of the right panel.
-    let corner = left_plot.page_point(path_square.x_range.0, path_square.y_range.1);
-    let opposite_corner = left_plot.page_point(path_square.x_range.1, path_square.y_range.0);
+    let top_left = left_plot.page_point(path_square.x_range.0, path_square.y_range.1);
+    let bottom_right = left_plot.page_point(path_square.x_range.1, path_square.y_range.0);
     group = group.add(outlined(
         rectangle(
-            corner,
-            (opposite_corner.0 - corner.0, opposite_corner.1 - corner.1),
+            top_left,
+            (bottom_right.0 - top_left.0, bottom_right.1 - top_left.1),
             "none",
         ),
         DARK,
@@ -96,10 +96,10 @@ pub fn draw_singularities(robot: &Robot) -> String {
             group = group.add(dot.set("stroke", "white").set("stroke-width", 1.5));
         }
     }
-    let (x, y) = axes_with_step(20.0);
-    group = left_plot.draw_axes(group, &x, &y);
-    let (x, y) = axes_with_step(10.0);
-    group = right_plot.draw_axes(group, &x, &y);
+    let (x_axis, y_axis) = axes_with_step(20.0);
+    group = left_plot.draw_axes(group, &x_axis, &y_axis);
+    let (x_axis, y_axis) = axes_with_step(10.0);
+    group = right_plot.draw_axes(group, &x_axis, &y_axis);
     for (i, (names, path)) in paths.iter().enumerate() {
         let (colour, dashes) = PATH_STYLES[i % PATH_STYLES.len()];
         let point = (1226.0, 124.0 + 27.0 * i as f64);
@@ -153,8 +153,8 @@ pub fn draw_singularities(robot: &Robot) -> String {
     svg_page(PAGE_SIZE, group)
 }
 
-/// The least of the head's margins, with the tail at neutral; `None` if the pose is impossible or breaks a limit
-/// that is not a slider's.
+/// The least margin of the head and the front legs, with the tail at neutral. `None` if the pose is impossible, or
+/// breaks a limit other than a slider's stroke.
 fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
@@ -162,7 +162,7 @@ fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
         ..robot.neutral_pose()
     };
     let solution = robot.lizard().solve(&pose).ok()?;
-    let is_broken = robot
+    let breaks_limit = robot
         .limits()
         .violations(&solution)
         .any(|violation| !matches!(violation.check, Check::StrokeLeft | Check::StrokeRight));
@@ -174,19 +174,19 @@ fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
         all_margins.leg[0],
         all_margins.leg[1],
     ];
-    (!is_broken).then(|| margins.into_iter().fold(1.0, f64::min))
+    (!breaks_limit).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
-/// The paths of all gaits in the plane of theta1 and theta4, each with the names of the gaits that take it. A gait
-/// and its reverse take the same path.
+/// The paths of all gaits in the plane of theta1 and theta4, each with the names of its gaits. A gait and its reverse
+/// have the same path.
 fn gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for gait in robot.gaits() {
         let path = gait_path(gait);
-        let close_path = paths
+        let same_path = paths
             .iter_mut()
-            .find(|(_, other_path)| are_close(other_path, &path));
-        match close_path {
+            .find(|(_, other_path)| are_same_path(other_path, &path));
+        match same_path {
             Some((names, _)) => {
                 names.push_str(", ");
                 names.push_str(gait.name());
@@ -197,24 +197,24 @@ fn gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     paths
 }
 
-/// The path of a gait in the plane of theta1 and theta4; a single point if the gait moves neither.
+/// The path of a gait in the plane of theta1 and theta4; a single point if neither angle changes.
 fn gait_path(gait: &CheckedGait) -> Vec<(f64, f64)> {
-    let angles_at = |i: i32| {
+    let angles_at_step = |i: i32| {
         let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
         (theta1, theta4)
     };
-    let start = angles_at(0);
-    let is_moving =
-        (1..500).any(|i| (angles_at(i).0 - start.0).hypot(angles_at(i).1 - start.1) > 1e-6);
+    let start = angles_at_step(0);
+    let is_moving = (1..500)
+        .any(|i| (angles_at_step(i).0 - start.0).hypot(angles_at_step(i).1 - start.1) > 1e-6);
     if is_moving {
-        (0..=500).map(angles_at).collect()
+        (0..=500).map(angles_at_step).collect()
     } else {
         vec![start]
     }
 }
 
 /// True if every point of each path is within 0.5 deg of a point of the other.
-fn are_close(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
+fn are_same_path(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
     let is_near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()
             .any(|other| (point.0 - other.0).hypot(point.1 - other.1) < 0.5)
@@ -249,8 +249,8 @@ fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     group = draw_sweep(group, plot, |theta1| {
         bars.singular_poses_with(theta1).collect()
     });
-    // Curves that are steep over theta1 also need a sweep over theta4. That sweep uses the mirrored five-bar, in which
-    // left and right are exchanged.
+    // A sweep over theta1 has few points on steep curves, so a sweep over theta4 follows. The second sweep uses the
+    // mirrored five-bar, in which left and right are exchanged.
     let mirrored_bars = FiveBar {
         base: bars.base,
         left_crank_length: bars.right_crank_length,

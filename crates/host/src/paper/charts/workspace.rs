@@ -44,7 +44,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
     for path in look_paths(robot) {
         group = group.add(plot.curve(&path, LOOK_COLOUR, 2.5));
     }
-    group = draw_mechanism(group, &plot, robot);
+    group = draw_five_bar(group, &plot, robot);
     group = plot.draw_axes(group, &X_AXIS, &Y_AXIS);
     group = add_title(
         group,
@@ -172,7 +172,7 @@ fn draw_ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64)
     )
 }
 
-/// The closed path of the head in the gesture `look`; empty if the robot does not have that gesture.
+/// The head's path in the gesture `look`; an empty list if the robot does not have this gesture.
 fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
     robot
         .gait("look")
@@ -186,7 +186,7 @@ fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
         .collect()
 }
 
-fn draw_mechanism(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
+fn draw_five_bar(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     if let Ok(solution) = robot.lizard().solve(&robot.neutral_pose()) {
         let head = &solution.head;
         let points = [

@@ -2,11 +2,11 @@
 //!
 //! All lizards run the same code; the robot is a section of flash after the code. This program contains the code, so a
 //! user needs only a robot.toml: `lizard flash`, `image`, `sim`, `twin`, `console --sim` and all other commands put
-//! the section of the selected robot after the code. No build in a folder is used implicitly. Developers of the
-//! firmware name their build, with `--elf` for a simulation, as `make sim` does, or with `--image` for a board. Only
-//! `lizard sim bench` always needs an ELF, because it finds the functions that it times by their names.
+//! the section of the selected robot after the code. The program never searches for a build. Developers of the
+//! firmware name their build with `--elf` for a simulation (as `make sim` does), or with `--image` for a board. Only
+//! `lizard sim bench` always needs an ELF, because it finds the timed functions by their names.
 //!
-//! An ELF contains a robot. If this is not the selected robot, the user has made a mistake, and the ELF is refused.
+//! An ELF contains a robot. If this is not the selected robot, the ELF is refused as a mistake of the user.
 
 pub use lizard_upload::robot_label;
 

@@ -20,11 +20,11 @@ pub struct Firmware {
     pub image: Image,
 }
 
-/// The error for a file that cannot be read or is not a program of an AVR.
+/// The error for a file that cannot be read, or is not a program for an AVR.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {error}; `make firmware` builds it", elf.display())]
+#[error("{}: {error}; `make firmware` builds it", path.display())]
 pub struct ReadError {
-    elf: PathBuf,
+    path: PathBuf,
     error: LoadError,
 }
 
@@ -37,10 +37,10 @@ impl From<ReadError> for Failure {
 /// Reads the program of an ELF or HEX file.
 ///
 /// # Errors
-/// Fails if the file cannot be read, or is not a program of an AVR.
-pub fn read_image(elf: &Path) -> Result<Image, ReadError> {
-    Image::read(note_input(elf)).map_err(|error| ReadError {
-        elf: elf.to_owned(),
+/// Fails if the file cannot be read, or is not a program for an AVR.
+pub fn read_image(path: &Path) -> Result<Image, ReadError> {
+    Image::read(note_input(path)).map_err(|error| ReadError {
+        path: path.to_owned(),
         error,
     })
 }
@@ -72,10 +72,10 @@ impl From<FirmwareError> for Failure {
 /// Returns the firmware to run for a robot: the given file, which must contain this robot, or the code inside this
 /// program followed by this robot. `robot_file` is the robot's source.
 ///
-/// An image without a robot's section is another program. It is accepted, because it can be run, too.
+/// An image without a robot's section is accepted, because a simulated UNO can run any program.
 ///
 /// # Errors
-/// Fails if the file is missing, is not a program of an AVR, or contains another robot.
+/// Fails if the file is missing, is not a program for an AVR, or contains another robot.
 pub(crate) fn select_firmware(
     elf: Option<&Path>,
     robot_file: &RobotFile,
@@ -117,14 +117,14 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
 /// The code inside this program followed by this robot.
 ///
 /// # Panics
-/// Never: a test reads that code, and a robot's section has room.
+/// Never: a test parses this code, and the image has room for a robot's section.
 pub fn built_in_image(robot: &Robot) -> Image {
     let mut image = Image::parse_hex(CODE_HEX).expect("a test reads it");
     replace_robot(&mut image, robot).expect("a robot's section has room");
     image
 }
 
-/// The image with this robot's routines changed so that they do not wait for contacts; see
+/// Changes this robot's routines in the image so that they do not wait for contacts; see
 /// [`Robot::without_contacts`].
 ///
 /// # Panics
@@ -138,12 +138,12 @@ pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
 /// stays unchanged.
 ///
 /// # Errors
-/// Fails if the file cannot be read, or is not a program of an AVR.
+/// Fails if the file cannot be read, or is not a program for an AVR.
 pub fn read_with_robot(path: &Path, robot: &Robot) -> Result<Image, ReadError> {
     let mut image = read_image(path)?;
     if robot_in(&image.flash()).is_some() {
         replace_robot(&mut image, robot).map_err(|error| ReadError {
-            elf: path.to_owned(),
+            path: path.to_owned(),
             error,
         })?;
     }

@@ -30,7 +30,7 @@ use simulated_uno::{Radio, RadioLink};
 
 use crate::shared::firmware::{self, Firmware};
 use crate::shared::progress::{Spinner, progress_bar};
-use crate::shared::suggestion::did_you_mean;
+use crate::shared::suggestion::suggestion_text;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 use analysis::Run;
@@ -289,7 +289,7 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         return Err(Failure::Input(format!(
             "robot.toml has no gait `{gait}`; it has {}{}",
             names.join(", "),
-            did_you_mean(gait, names)
+            suggestion_text(gait, names)
         )));
     }
     let ms = duration_ms.unwrap_or(12_000);

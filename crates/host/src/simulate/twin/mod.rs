@@ -14,7 +14,7 @@ use simulated_uno::{Fidelity, State, Uno};
 
 use crate::shared::firmware;
 use crate::shared::progress::Spinner;
-use crate::shared::suggestion::did_you_mean;
+use crate::shared::suggestion::suggestion_text;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
 use crate::simulate::sim::{frame, read_script, spans, supplies, time_progress_bar, tour};
@@ -183,7 +183,7 @@ pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a Checke
             Err(Failure::Input(format!(
                 "robot.toml has no gait `{name}`; those that move are {}{}",
                 gaits.join(", "),
-                did_you_mean(name, gaits)
+                suggestion_text(name, gaits)
             )))
         }
     }

@@ -95,12 +95,16 @@ fn a_wrong_header_is_refused() {
         assert_eq!(outcome.stderr.trim_end(), format!("lizard: {message}"));
         assert_eq!(outcome.stdout, "");
     }
-    let long_line_outcome = run_line("pose", vec![b'1'; 100_000]);
-    assert_eq!(long_line_outcome.code, Some(2));
-    assert_eq!(
-        long_line_outcome.stderr.trim_end(),
-        "lizard: line 1, column 1: longer than 1024 bytes"
-    );
+    for (length, is_too_long) in [(1024, false), (1025, true), (100_000, true)] {
+        let outcome = run_line("pose", vec![b'1'; length]);
+        assert_eq!(outcome.code, Some(2));
+        let message = "lizard: line 1, column 1: longer than 1024 bytes";
+        assert_eq!(
+            outcome.stderr.trim_end() == message,
+            is_too_long,
+            "{length}"
+        );
+    }
 }
 
 #[test]
