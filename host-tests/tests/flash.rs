@@ -126,11 +126,12 @@ fn a_byte_that_changes_after_it_was_written_ends_the_upload() {
         }
         shell.has_ended()
     });
-    let screen = shell.screen();
     assert!(
         has_ended,
-        "waited {LIMIT} for the end of the upload:\n{screen}"
+        "waited {LIMIT} for the end of the upload:\n{}",
+        shell.screen()
     );
+    let screen = shell.last_screen();
     assert!(has_flipped_bit, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: it did not work"), "{screen}");

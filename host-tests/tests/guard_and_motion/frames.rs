@@ -10,7 +10,7 @@ use lizard_core::numbers::pose::{Pose, Pulses};
 use lizard_core::numbers::units::CYCLE;
 use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::NamedRobot;
-use lizard_robot::{CheckedGait, Robot};
+use lizard_robot::Robot;
 
 use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
@@ -277,11 +277,6 @@ pub fn pose_command(angles_deg: [f64; 4]) -> String {
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
-/// Returns the command that starts a gait.
-pub fn gait_command(gait: &CheckedGait) -> String {
-    gait.command()
-}
-
 /// Returns a random command that moves a robot, stops it or sets its speed.
 pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
     let pose_line = |rng: &mut Rng, share: f64| {
@@ -290,7 +285,7 @@ pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
         pose_command(chassis_angles_deg(firmware, &pose))
     };
     match rng.u8(..20) {
-        0..9 => gait_command(&robot.gaits()[rng.usize(..robot.gaits().len())]),
+        0..9 => robot.gaits()[rng.usize(..robot.gaits().len())].command(),
         9..13 => pose_line(rng, 0.25),
         13..15 => pose_line(rng, 0.8),
         15 => "stop".into(),
@@ -305,7 +300,7 @@ pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
     let gait_index = robot
         .gaits()
         .iter()
-        .position(|gait| gait_command(gait) == command);
+        .position(|gait| gait.command() == command);
     let activity_of = |index: usize| {
         GaitId::all(robot.gaits().len())
             .nth(index)

@@ -9,7 +9,6 @@ use lizard_kinematics::End;
 use lizard_robot::servo::{FORWARD_TURN_SIGN, LEG_NAMES, OPPOSITE_SERVO};
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 
-use crate::frames::gait_command;
 use crate::truth::is_safe;
 
 /// Number of phases that the wave tables distinguish in a cycle.
@@ -52,7 +51,7 @@ fn the_core_has_the_gaits_of_the_file_in_the_same_order() {
         let names: Vec<String> = GaitId::all(firmware.gait_count())
             .map(|id| firmware.gait_name(id).map(char::from).collect())
             .collect();
-        let expected: Vec<String> = robot.gaits().iter().map(gait_command).collect();
+        let expected: Vec<String> = robot.gaits().iter().map(CheckedGait::command).collect();
         assert_eq!(names, expected, "{name}");
     }
 }

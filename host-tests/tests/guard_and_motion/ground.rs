@@ -5,7 +5,7 @@ use lizard_core::numbers::pose::Pulses;
 use lizard_host_tests::{NamedRobot, paper_robot, robots};
 use lizard_robot::{CheckedGait, Robot, Travel};
 
-use crate::frames::{CheckedRobot, gait_command, settling_frames};
+use crate::frames::{CheckedRobot, settling_frames};
 
 /// Converts pulse widths in cycles of 62.5 ns to servo angles in the chassis frame, deg.
 fn angles_of_pulses(robot: &Robot, pulses: Pulses) -> [f64; 4] {
@@ -22,7 +22,7 @@ fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -
     let robot = &named.robot;
     let mut walker = CheckedRobot::standing(named);
     walker.expect_ok(&format!("speed {speed_percent}"));
-    walker.expect_ok(&gait_command(gait));
+    walker.expect_ok(&gait.command());
     walker.run_frames(settling_frames(robot));
     if walker.motion().hazard().is_some() {
         return None;

@@ -7,8 +7,7 @@ use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{NamedRobot, rng, robots};
 
 use crate::frames::{
-    CheckedRobot, WAKING_FRAMES, final_activity, gait_command, max_speed_change, random_command,
-    settling_frames,
+    CheckedRobot, WAKING_FRAMES, final_activity, max_speed_change, random_command, settling_frames,
 };
 use crate::truth::random_safe_pose;
 
@@ -218,7 +217,7 @@ fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_start_again() 
         for _ in 0..DIALOGUE_COUNT {
             let mut walker = CheckedRobot::standing(named);
             let gait_index = rng.usize(..robot.gaits().len());
-            walker.expect_ok(&gait_command(&robot.gaits()[gait_index]));
+            walker.expect_ok(&robot.gaits()[gait_index].command());
             walker.run_frames(rng.u32(..200));
             let last_gait_pose = walker.pose();
             let command = ["stop", "rest"][rng.usize(..2)];
@@ -230,7 +229,7 @@ fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_start_again() 
                 assert_eq!(walker.motion().phase(), 0, "{}", named.name);
             }
             walker.expect_ok("stand");
-            walker.expect_ok(&gait_command(&robot.gaits()[gait_index]));
+            walker.expect_ok(&robot.gaits()[gait_index].command());
             let firmware = robot.firmware();
             let id = GaitId::all(firmware.gait_count())
                 .nth(gait_index)

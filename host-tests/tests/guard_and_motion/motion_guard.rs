@@ -9,7 +9,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
-use crate::frames::{CheckedRobot, gait_command, settling_frames};
+use crate::frames::{CheckedRobot, settling_frames};
 use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
 /// Number of random pairs of poses tried for each robot. Some robots have no unsafe path between safe poses.
@@ -171,7 +171,7 @@ fn a_running_gait_is_never_stopped_by_the_guard() {
     for named in robots() {
         for gait in named.robot.gaits() {
             let mut walker = CheckedRobot::standing(named);
-            walker.expect_ok(&gait_command(gait));
+            walker.expect_ok(&gait.command());
             // The path to the gait's first pose may contain an unsafe pose.
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {

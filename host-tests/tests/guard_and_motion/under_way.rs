@@ -5,7 +5,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::units::CYCLE;
 use lizard_host_tests::{NamedRobot, rng, robots};
 
-use crate::frames::{CheckedRobot, gait_command, settling_frames};
+use crate::frames::{CheckedRobot, settling_frames};
 use crate::gaits::{FULL_PACE, all_gaits};
 
 #[test]
@@ -36,7 +36,7 @@ fn every_speed_in_percent_gives_this_share_of_a_gaits_pace() {
     for named in robots() {
         for float_gait in named.robot.gaits().iter().skip(1) {
             let mut walker = CheckedRobot::standing(named);
-            walker.expect_ok(&gait_command(float_gait));
+            walker.expect_ok(&float_gait.command());
             walker.run_frames(settling_frames(&named.robot));
             if walker.motion().hazard().is_some() {
                 blocked_count += 1; // the path to the gait's first pose is unsafe
@@ -84,10 +84,10 @@ fn a_gait_that_is_ordered_again_continues() {
                 (CheckedRobot::standing(named), CheckedRobot::standing(named));
             for frame in 0..150 {
                 if frame % 7 == 0 {
-                    tested.expect_ok(&gait_command(gait));
+                    tested.expect_ok(&gait.command());
                 }
                 if frame == 0 {
-                    reference.expect_ok(&gait_command(gait));
+                    reference.expect_ok(&gait.command());
                 }
                 assert_eq!(
                     tested.run_frame(),
@@ -112,7 +112,7 @@ fn every_frame_of_a_running_gait_is_a_pose_of_this_gait() {
             .zip(GaitId::all(named.robot.gaits().len()))
         {
             let mut walker = CheckedRobot::standing(named);
-            walker.expect_ok(&gait_command(gait));
+            walker.expect_ok(&gait.command());
             let firmware = named.robot.firmware();
             let core_gait = firmware.gait(id);
             walker.run_frames(settling_frames(&named.robot));

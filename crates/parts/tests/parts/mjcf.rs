@@ -280,6 +280,7 @@ fn a_servo_has_its_stall_torque_its_largest_rate_and_its_travel() {
         let text = mjcf_with(&robot, |scene| scene.play = play);
         let document = Document::parse(&text).expect("well formed");
         let motors = section_elements(&document, "actuator");
+        assert_eq!(motors.len(), 4);
         for (servo, motor) in motors.iter().enumerate() {
             assert_eq!(motor.attribute("name"), Some(SERVO_NAMES[servo]));
             let joint_name = motor.attribute("joint").expect("a joint");
