@@ -173,7 +173,7 @@ pub type ServoAnswers = BTreeMap<String, BTreeMap<String, Answers>>;
 /// Returns the answers stored in `servos.json`.
 ///
 /// # Panics
-/// If `servos.json` does not have the format of [`format_blocks`].
+/// If `servos.json` does not have the format of [`crate::text::format_blocks`].
 pub fn stored() -> ServoAnswers {
     serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
 }
