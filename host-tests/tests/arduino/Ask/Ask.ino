@@ -1,4 +1,5 @@
-// Says the number of each servo and of what cannot be one, then writes every number that it gets and says what it reads.
+// Prints the result of attaching each of nine servos and of attaching a pin that does not exist. Then writes every number
+// that it receives to a servo, and prints what it reads back.
 #include <ServoPulses.h>
 
 Servo servos[9];

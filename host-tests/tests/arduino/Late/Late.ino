@@ -1,4 +1,4 @@
-// Interrupts are off for 30 us at a time, longer than the library bears. The LED shows that it has counted late edges.
+// Blocks interrupts for 30 us at a time, longer than the library allows. The LED is on once a late edge was counted.
 #include <ServoPulses.h>
 
 Servo servo;

@@ -1,4 +1,5 @@
-// One servo has its width written as often as possible, whose bytes both change; another is attached and detached.
+// Writes the width of one servo as often as possible, with values that differ in both bytes, and attaches and detaches
+// another servo.
 #include <ServoPulses.h>
 
 Servo written, attached;
