@@ -4,8 +4,9 @@
 use std::io::{self, BufWriter, Write};
 
 use lizard_paper::design::{
-    CLAIMED_LCI, ChartPoint, Conditioning, Demands, Design, PROPORTION_SUM, Performance,
-    Proportions, Search, compute_chart_points, find_design, merge_and_rank, triangle_points,
+    BestValues, CLAIMED_LCI, ChartPoint, Conditioning, Demands, Design, PROPORTION_SUM,
+    Performance, Proportions, Search, compute_chart_points, find_design, merge_and_rank,
+    triangle_points,
 };
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -381,22 +382,9 @@ fn print_ranking(
             given_proportions.r1, given_proportions.r2, given_proportions.r3
         )?,
         Some(mut given_design) => {
-            // A score is relative to the best value of each criterion. The given design may have the best value.
-            let best_of = |value: fn(&Design) -> f64| {
-                designs
-                    .iter()
-                    .map(value)
-                    .fold(value(&given_design), f64::max)
-            };
-            let (lci, margin, stride) = (
-                best_of(|d| d.lci),
-                best_of(|d| d.margin),
-                best_of(|d| d.stride),
-            );
-            given_design.score = ((given_design.lci / lci)
-                * (given_design.margin / margin)
-                * (given_design.stride / stride))
-                .cbrt();
+            // The given design may have the best value of a criterion.
+            let best_values = BestValues::among(designs.iter().chain([&given_design]));
+            given_design.score = best_values.score(&given_design);
             let rank = 1 + designs
                 .iter()
                 .filter(|d| d.score > given_design.score + 1e-9)

@@ -212,20 +212,41 @@ fn margin_and_lci(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
     )
 }
 
+/// The best value of each criterion among designs, to which their scores are relative.
+pub struct BestValues {
+    lci: f64,
+    margin: f64,
+    stride: f64,
+}
+
+impl BestValues {
+    /// Finds the best values among designs.
+    pub fn among<'a>(designs: impl Iterator<Item = &'a Design> + Clone) -> Self {
+        let best_of = |value: fn(&Design) -> f64| {
+            designs.clone().map(value).fold(f64::MIN_POSITIVE, f64::max)
+        };
+        Self {
+            lci: best_of(|design| design.lci),
+            margin: best_of(|design| design.margin),
+            stride: best_of(|design| design.stride),
+        }
+    }
+
+    /// Computes the score of one of the designs.
+    pub fn score(&self, design: &Design) -> f64 {
+        let lci_share = design.lci / self.lci;
+        let margin_share = design.margin.max(0.0) / self.margin;
+        let stride_share = design.stride / self.stride;
+        (lci_share * margin_share * stride_share).cbrt()
+    }
+}
+
 /// Scores the designs and sorts them, best first.
 fn rank_designs(designs: &mut [Design]) {
-    let best_of =
-        |value: fn(&Design) -> f64| designs.iter().map(value).fold(f64::MIN_POSITIVE, f64::max);
-    let (lci, margin, stride) = (
-        best_of(|d| d.lci),
-        best_of(|d| d.margin),
-        best_of(|d| d.stride),
-    );
+    let best_values = BestValues::among(designs.iter());
     let all_designs = designs.to_vec();
     for design in designs.iter_mut() {
-        let product =
-            (design.lci / lci) * (design.margin.max(0.0) / margin) * (design.stride / stride);
-        design.score = product.cbrt();
+        design.score = best_values.score(design);
         design.pareto = !all_designs.iter().any(|other| {
             other.lci > design.lci && other.margin > design.margin && other.stride > design.stride
         });

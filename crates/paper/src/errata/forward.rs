@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use lizard_kinematics::{End, Links, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, angle_error_deg, polar};
+use super::sample::{Sample, angle_error_deg, half_angle_tangent, polar};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -243,13 +243,6 @@ pub const EQUATIONS: &[Equation] = &[
 fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
     let [a, b, c, d] = links.map(|(length, angle)| polar(length, angle));
     (a + b - c - d - Vector::new(base, 0.0)).length()
-}
-
-/// The tangent of half an angle, by the quadratic formula. `root_sign` selects the root. `None` if the roots are not
-/// real.
-fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
-    let radicand = b * b - 4.0 * a * c;
-    (radicand >= 0.0).then(|| (-b + root_sign * radicand.sqrt()) / (2.0 * a))
 }
 
 /// The coefficients A, B and C as printed, for this theta4 (rad) and the sample's theta1.

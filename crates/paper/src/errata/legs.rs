@@ -3,7 +3,7 @@
 use lizard_kinematics::{Leg, Vector};
 
 use super::equation::Equation;
-use super::sample::{Sample, angle_error_deg, polar};
+use super::sample::{Sample, angle_error_deg, half_angle_tangent, polar};
 
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
@@ -136,11 +136,4 @@ fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64
             0.0,
         ))
     })
-}
-
-/// The tangent of half an angle, by the quadratic formula. `root_sign` selects the root. `None` if the roots are not
-/// real. A radicand of zero may be slightly negative from rounding.
-fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
-    let radicand = b * b - 4.0 * a * c;
-    (radicand > -1e-12).then(|| (-b + root_sign * radicand.max(0.0).sqrt()) / (2.0 * a))
 }
