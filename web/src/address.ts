@@ -24,10 +24,12 @@ export class Address {
   private isInitialAddressRead = false;
 
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     /** The name of the robot's file with which the page starts if the address names none. */
     private readonly defaultFile: string,
-  ) {}
+  ) {
+    session.followRobot(() => this.scheduleUpdate());
+  }
 
   /** Starts to update the address with each change of the robot; called once the page's first address has been read. */
   begin(): void {
@@ -46,10 +48,10 @@ export class Address {
   }
 
   private async update(): Promise<void> {
-    const { toml, original, file } = this.session();
+    const { toml, original, file } = this.session;
     const robot = toml === original ? null : await pack(toml);
     // The robot may have changed meanwhile; a later call then shows it.
-    if (this.session().toml !== toml) return;
+    if (this.session.toml !== toml) return;
     const parts = new URLSearchParams();
     const room = addressParts(location.hash).get('room');
     if (room) parts.set('room', room);

@@ -1,7 +1,10 @@
-// The page: a session, and the views that show it.
+// The page: a session, and the views that follow its state.
+import { effect } from '@preact/signals-core';
+
 import { Address, PAGE_ENTRY, addressParts } from './address';
 import { runInRealTime } from './clock';
 import { files } from './files';
+import { follow } from './follow';
 import { browserStorage } from './kept';
 import { BluetoothLink, bluetoothProblem, IPHONE_ADVICE } from './link/bluetooth-link';
 import type { Link } from './link/link';
@@ -9,12 +12,13 @@ import { hasSerial, NO_SERIAL_MESSAGE, PortLink } from './link/port-link';
 import { keepOffline } from './offline';
 import { Predictor } from './predictor';
 import { lags, load } from './robot';
-import { type BoardBanner, Session } from './session';
+import { Session } from './session';
+import type { BoardBanner } from './session-state';
 import { messageOf } from './trouble';
 import { Alarm } from './view/alarm';
 import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
-import { element } from './view/canvas';
+import { element, setText } from './view/canvas';
 import { RobotChoice } from './view/choice';
 import { downloadRobot } from './view/download';
 import { Drive, formatDisplacement } from './view/drive';
@@ -62,131 +66,8 @@ const troubles = new Troubles();
 
 async function start(): Promise<void> {
   const module = await files.wasm();
-  const robot = load(module);
   const choice = await RobotChoice.load();
-  const getSession = () => session;
-  const address = new Address(getSession, choice.chosenFile);
-
-  const connectButton = element<HTMLButtonElement>('connect');
-  const radioButton = element<HTMLButtonElement>('radio');
-  const scope = new ScopeView();
-  const margins = new MarginsView();
-  const maps = new MapsView();
-  const log = new Log((line) => void session.ask(line));
-  const floor = new Floor(() => {
-    session.returnToStart();
-    floor.clearTracks();
-  });
-  const isSetupOpen = () => setup.isOpen;
-  const drive = new Drive((line) => session.ask(line));
-  const steer = new Steering(
-    () => drive.predictedGaits(),
-    (line) => void drive.ask(line),
-    isSetupOpen,
-    () => pace.percent,
-  );
-  const pace = new Pace((line) => drive.ask(line));
-  const predictor = new Predictor(module, (gait, prediction) => {
-    drive.showPrediction(gait, prediction);
-    measure?.tickMovingGaits();
-    updateNumbers();
-    beginIntroWalk();
-  });
-  const predictGaits = () => {
-    const { toml, floor, servos, description, filePredictions } = session;
-    filePredictions?.forEach((prediction, gait) => prediction && drive.showPrediction(gait, prediction));
-    measure?.tickMovingGaits();
-    const firstIndex = description.gaits.findIndex(({ command }) => command === session.gait);
-    predictor.ask({ toml, floor, servos, gaits: filePredictions ? 0 : description.gaits.length, first: Math.max(0, firstIndex) });
-    routines.predict();
-  };
-  // When the page opens, the robot walks slowly until the user acts, unless the system asks for reduced motion.
-  let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  const beginIntroWalk = () => {
-    const gait = gaitFor({ ahead: 1, left: 0 }, drive.predictedGaits());
-    if (isIntroOver || !gait || isSetupOpen() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
-    isIntroOver = true;
-    void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
-  };
-  // The user has taken over.
-  for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });
-  const world = new World(getSession, predictGaits);
-  const health = new Health(getSession);
-  const lengths: Lengths = new Lengths(getSession, (edits) => sketch.offerValidLengths(edits));
-  const parts = new PartsView(getSession);
-  const fit = new FitView(getSession, parts);
-  const sketch = new Sketch(module, getSession, fit);
-  const recordView = new RecordView(getSession, floor, (line) => drive.ask(line), () => pace.percent);
-  const calibrate = new Calibrate(getSession);
-  let isWriting = false;
-  const writer = new Writer(getSession, (isBusy) => {
-    isWriting = health.isPaused = isBusy;
-    // The boot loader uses the line, so nothing else may take it.
-    choice.isEnabled = !isBusy;
-    connectButton.disabled = isBusy || !hasSerial();
-    radioButton.disabled = isBusy;
-    flash.update();
-    setup.update();
-  });
-  const alarm = new Alarm();
-  const remote = new Remote();
-  const text: RobotText = new RobotText(getSession, writer, () => routines.show());
-  const routines = new RoutinesView(module, getSession, text, () => pace.percent, (line) => drive.ask(line), writer);
-  const gaits = new GaitsView(module, getSession, (line) => drive.ask(line), writer, (ownGait, foundGait, output) => {
-    // The second robot is drawn from above alone.
-    parts.set3d(false);
-    return recordView.compare(ownGait, foundGait, output);
-  });
-  const path = new PathView(module, getSession, (line) => drive.ask(line), writer);
-  const flash = new FlashView(getSession, writer);
-  // Loaded when its room is opened.
-  let measure: MeasureView | null = null;
-  const openMeasure = async () => {
-    if (element('room-measure').hidden || measure) return;
-    const { MeasureView } = await import('./view/measure');
-    if (measure) return;
-    measure = new MeasureView(getSession, () => drive.predictedGaits(), isSetupOpen);
-    measure.showRobot(session.description);
-    measure.changeLink(session.isReal);
-  };
-  document.addEventListener(ROOM_OPENED, () => void openMeasure());
-  const setup: Setup = new Setup(getSession, writer, () => connectBoard());
-
-  const boardRobot = new BoardRobot(getSession, troubles, ({ file, toml }) => {
-    choice.select(file);
-    void replaceRobot(async () => {
-      await loadChosenFile();
-      if (session.toml !== toml) await session.change(toml);
-    });
-  });
-
-  const session: Session = new Session(robot, {
-    onRobot(description) {
-      scope.setRobot(description);
-      margins.setRobot(description);
-      maps.setRobot(robot);
-      drive.showRobot(description);
-      // A board that stays connected continues its gait.
-      drive.showActivity(session.gait);
-      const strangeWords = unknownWords([...drive.commands], description.words);
-      if (strangeWords.length > 0) troubles.say('page', `The core does not know these words of the page: ${strangeWords.join(', ')}.`);
-      lengths.showRobot(description.lengths);
-      fit.showRobot(description.lengths);
-      sketch.showRobot();
-      setup.update();
-      floor.clearTracks();
-      world.showRobot();
-      gaits.showRobot();
-      path.showRobot();
-      address.scheduleUpdate();
-      routines.showRobot();
-      text.showRobot();
-      recordView.showRobot(description);
-      measure?.showRobot(description);
-      void openMeasure();
-      predictGaits();
-      void boardRobot.update();
-    },
+  const session = new Session(load(module), {
     onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
       recordView.addFrame(frame, widths, seconds);
@@ -212,50 +93,6 @@ async function start(): Promise<void> {
         'Is this board an Arduino UNO? By its USB chip it may also be a Nano, and this robot reaches into the boot section of a Nano. ' +
           'What is written there would ruin a Nano until a programmer at its pins repairs it. OK: it is a UNO.',
       ),
-    onActivity(gait) {
-      drive.showActivity(gait);
-      recordView.followGait(gait);
-      measure?.noteActivity(gait);
-      routines.setActivity(gait);
-      updateNumbers();
-    },
-    onBanner(banner) {
-      element('where').textContent = boardText(session.link.name, banner, session.description.hash);
-      setup.update();
-      void boardRobot.update();
-      // On a slow machine the predictions come before the robot's banner.
-      beginIntroWalk();
-    },
-    speed(percent) {
-      pace.show(percent);
-      drive.setPace(percent);
-      routines.setPace(percent);
-    },
-    onStatus({ phase }) {
-      routines.setPhase(phase);
-      calibrate.refresh();
-    },
-    onSilent(isSilent) {
-      alarm.setSilent(isSilent);
-      if (isSilent) measure?.stop('the robot is silent');
-    },
-    onStopping: (isStopping) => alarm.setStopping(isStopping),
-    onLink(link) {
-      latestCycle = 0;
-      element('heard').hidden = !session.isReal;
-      scope.changeLink(session.isReal);
-      element('where').textContent = `waiting for the ${link.name}`;
-      // Reserves the row's height for the line that most likely follows.
-      const { version, name, hash } = session.description;
-      element('where').parentElement!.dataset.room = boardText(link.name, { version, robot: { name, hash } }, hash);
-      connectButton.textContent = session.isReal ? 'Back to the simulation' : 'Connect a board…';
-      connectButton.disabled = !session.isReal && !hasSerial();
-      radioButton.hidden = session.isReal || bluetoothProblem() !== null;
-      element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
-      flash.update();
-      measure?.changeLink(session.isReal);
-      setup.followLink();
-    },
     onTrouble(cause, message) {
       if (cause === 'fault' && message !== null) remote.buzz();
       // Offers this firmware to a board without it.
@@ -263,36 +100,124 @@ async function start(): Promise<void> {
       troubles.say(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
   });
-  let latestCycle = 0;
 
+  let latestCycle = 0;
+  const connectButton = element<HTMLButtonElement>('connect');
+  const radioButton = element<HTMLButtonElement>('radio');
+  const predictor = new Predictor(module, session);
+  const scope = new ScopeView(session);
+  const margins = new MarginsView(session);
+  const maps = new MapsView(session);
+  const log = new Log((line) => void session.ask(line));
+  const floor = new Floor(() => {
+    session.returnToStart();
+    floor.clearTracks();
+  });
+  session.followRobot(() => floor.clearTracks());
+  const isSetupOpen = () => setup.isOpen;
+  const drive = new Drive(session, predictor);
+  const askDrive = (line: string) => drive.ask(line);
+  const pace = new Pace(session, askDrive);
+  const steer = new Steering(() => predictor.gaits, (line) => void drive.ask(line), isSetupOpen, () => pace.percent);
+  const writer = new Writer(session);
+  new World(session);
+  new Health(session, writer);
+  new Lengths(session, (edits) => sketch.offerValidLengths(edits));
+  const parts = new PartsView(session);
+  const fit = new FitView(session, parts);
+  const sketch = new Sketch(module, session, fit);
+  const recordView = new RecordView(session, floor, askDrive, () => pace.percent);
+  new Calibrate(session);
+  const alarm = new Alarm(session);
+  const remote = new Remote();
+  const text: RobotText = new RobotText(session, writer, () => routines.show());
+  const routines = new RoutinesView(module, session, text, () => pace.percent, askDrive, writer);
+  new GaitsView(module, session, askDrive, writer, (ownGait, foundGait, output) => {
+    // The second robot is drawn from above alone.
+    parts.set3d(false);
+    return recordView.compare(ownGait, foundGait, output);
+  });
+  new PathView(module, session, askDrive, writer);
+  const flash = new FlashView(session, writer);
+  const setup: Setup = new Setup(session, writer, () => connectBoard());
+  const address = new Address(session, choice.chosenFile);
+  // Loaded when its room is opened.
+  let measure: MeasureView | null = null;
+  const openMeasure = async () => {
+    if (element('room-measure').hidden || measure || !session.description) return;
+    const { MeasureView } = await import('./view/measure');
+    measure ??= new MeasureView(session, predictor, isSetupOpen);
+  };
+  document.addEventListener(ROOM_OPENED, () => void openMeasure());
+  session.followRobot(() => void openMeasure());
+  new BoardRobot(session, troubles, ({ file, toml }) => {
+    choice.select(file);
+    void replaceRobot(async () => {
+      await loadChosenFile();
+      if (session.toml !== toml) await session.change(toml);
+    });
+  });
+
+  // When the page opens, the robot walks slowly until the user acts, unless the system asks for reduced motion.
+  let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  const beginIntroWalk = () => {
+    const gait = gaitFor({ ahead: 1, left: 0 }, predictor.gaits);
+    if (isIntroOver || !gait || isSetupOpen() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
+    isIntroOver = true;
+    void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
+  };
+  // The user has taken over.
+  for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });
+  // On a slow machine the predictions come before the robot's banner.
+  follow([session.state.banner, predictor.predictions], () => session.banner && beginIntroWalk());
+
+  session.followRobot(({ words }) => {
+    const strangeWords = unknownWords([...drive.commands], words);
+    if (strangeWords.length > 0) troubles.say('page', `The core does not know these words of the page: ${strangeWords.join(', ')}.`);
+  });
+  effect(() => {
+    const { link, banner, description, isReal } = session;
+    if (!link) return;
+    const isBusy = writer.isBusy.value;
+    setText(element('where'), boardText(link.name, banner, description.hash));
+    // Reserves the row's height for the line that most likely follows.
+    const { version, name, hash } = description;
+    element('where').parentElement!.dataset.room = boardText(link.name, { version, robot: { name, hash } }, hash);
+    element('heard').hidden = !isReal;
+    element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
+    connectButton.textContent = isReal ? 'Back to the simulation' : 'Connect a board…';
+    // The boot loader uses the line, so nothing else may take it.
+    connectButton.disabled = isBusy || (!isReal && !hasSerial());
+    radioButton.disabled = isBusy;
+    radioButton.hidden = isReal || bluetoothProblem() !== null;
+    choice.isEnabled = !isBusy;
+  });
+  session.state.link.subscribe(() => (latestCycle = 0));
+  session.state.gait.subscribe(() => session.description && updateNumbers());
   function updateNumbers(): void {
     const { last, gait } = session;
-    const setText = (id: string, text: string) => {
-      const box = element(id);
-      if (box.textContent !== text) box.textContent = text;
-    };
     alarm.update();
-    setText('doing', gait || '–');
-    setText('age', `${session.secondsSinceLine.toFixed(1)} s ago`);
+    setText(element('doing'), gait || '–');
+    setText(element('age'), `${session.secondsSinceLine.toFixed(1)} s ago`);
     if (last) {
       const { x, y, heading } = last.place;
       // Avoids -0.
       const round = (value: number, digits: number) => (Number(value.toFixed(digits)) + 0).toFixed(digits);
-      setText('ahead', `${round(y, 0)} mm`);
-      setText('sideways', `${round(x, 0)} mm`);
-      setText('heading', `${round(heading, 1)}°`);
+      setText(element('ahead'), `${round(y, 0)} mm`);
+      setText(element('sideways'), `${round(x, 0)} mm`);
+      setText(element('heading'), `${round(heading, 1)}°`);
     }
-    const [measured, prediction] = [session.measured(), drive.predictionOf(gait)];
-    setText('cycle', formatDisplacement(measured) || '–');
-    setText('predicted', formatDisplacement(prediction) || '–');
+    const [measured, prediction] = [session.measured(), predictor.predictions.value.get(gait) ?? null];
+    setText(element('cycle'), formatDisplacement(measured) || '–');
+    setText(element('predicted'), formatDisplacement(prediction) || '–');
     // Rigid legs without play do not lag.
     const isLagging = lags(session.floor);
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !isLagging;
-    setText('lag', measured ? `${measured.lag.toFixed(1)}°` : '–');
-    setText('share', prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
+    setText(element('lag'), measured ? `${measured.lag.toFixed(1)}°` : '–');
+    setText(element('share'), prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
     const refusal = last?.fault ?? last?.scene?.refusal ?? null;
     element('refusal').hidden = refusal === null;
-    setText('refusal', refusal ?? '');
+    setText(element('refusal'), refusal ?? '');
   }
 
   const loadChosenFile = async () => {
@@ -305,7 +230,7 @@ async function start(): Promise<void> {
       troubles.say('robot', messageOf(error));
     }
   };
-  const ownRobot = new OwnRobot(getSession, troubles, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
+  const ownRobot = new OwnRobot(session, troubles, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
   /** Loads another robot; the user's changed one is put aside instead of being erased. */
   const replaceRobot = async (load: () => Promise<unknown>) => {
     const saved = browserStorage.getChanges();
@@ -335,7 +260,7 @@ async function start(): Promise<void> {
   // image is being written.
   addEventListener('beforeunload', (event) => {
     if (session.isBoardWalking) void session.stop();
-    else if (!(isWriting && session.isReal)) return;
+    else if (!(writer.isBusy.value && session.isReal)) return;
     event.preventDefault();
   });
 
@@ -404,7 +329,8 @@ async function start(): Promise<void> {
 }
 
 /** Returns the message that names the board and its robot. */
-function boardText(name: string, banner: BoardBanner, hash: string): string {
+function boardText(name: string, banner: BoardBanner | undefined, hash: string): string {
+  if (banner === undefined) return `waiting for the ${name}`;
   if (banner === null) return `on a ${name} without this firmware`;
   if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
   const { robot } = banner;

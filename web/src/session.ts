@@ -1,5 +1,7 @@
-// The session: the robot that the page shows, and the board at the other end of the serial line. Views only read the
-// session and call its methods.
+// The session: the robot that the page shows, and the board at the other end of the serial line. Views read the session,
+// call its methods and follow its state: a view that reads the state in an `effect` runs again when it has changed.
+import { batch } from '@preact/signals-core';
+
 import { loadBoard } from './board';
 import { files } from './files';
 import { type SavedChanges, browserStorage } from './kept';
@@ -18,6 +20,7 @@ import {
   type Refused,
   type Robot,
 } from './robot';
+import { type BoardBanner, FULL_PACE, SessionState } from './session-state';
 import { type Banner, parseBanner, type Status, parseStatus, parseReportedPose } from './status';
 import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
@@ -41,8 +44,6 @@ const STATUS_TIMEOUT_MS = 1000;
 const STOP_TIMEOUT_MS = 1000;
 /** Time after a reset within which `boot` has acted (three seconds), ms. */
 const BOOT_TIMEOUT_MS = 4000;
-/** The firmware's pace after a reset, percent. */
-const FULL_PACE = 100;
 const FRAME_SECONDS = 0.02;
 /** Longest simulated time between two updates of `clock`, ms. */
 const CLOCK_STEP_MS = 5;
@@ -52,12 +53,8 @@ const LINK_FAULT = 'link';
 /** The reason why nothing is written by radio. */
 export const NO_WRITING_BY_RADIO = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
 
-/** A board's banner; `unknown` if this firmware answers but sent no banner, null if it does not answer. */
-export type BoardBanner = Banner | 'unknown' | null;
-
+/** What happens in a session; everything else is its state. */
 export interface SessionListener {
-  /** Called for another robot, or for the same robot with other values. */
-  onRobot(description: Description): void;
   /** Called for each frame and its duration in seconds. */
   onFrame(frame: Frame, widths: Four<number> | null, seconds: number): void;
   /** Called for each pulse: its pin by the Arduino number, the cycle at which it rose, and its width in cycles. */
@@ -66,22 +63,8 @@ export interface SessionListener {
   onSent(line: string): void;
   /** Called with each line that is received and is to be shown. */
   onReceived(line: string): void;
-  /** Called when the robot's activity changes: a gait or a command. */
-  onActivity(gait: string): void;
-  /** Called when the board's firmware and robot are known. */
-  onBanner(banner: BoardBanner): void;
-  /** Called with the robot's pace, percent. */
-  speed(percent: number): void;
-  /** Called with each answer to `status`. */
-  onStatus(status: Status): void;
-  /** Called when another board is connected. */
-  onLink(link: Link): void;
   /** Asks the user whether the board is a UNO: on a Nano, writing would overwrite the boot loader. */
   confirmUno(): boolean;
-  /** Called when the robot leaves a line unanswered, and when it answers again. */
-  onSilent(isSilent: boolean): void;
-  /** Called when `stop` begins to be sent, and when the robot has answered it. */
-  onStopping(isStopping: boolean): void;
   /** Called with the current problem, or null once it is solved. */
   onTrouble(cause: Cause, message: string | null): void;
 }
@@ -92,7 +75,7 @@ export type Progress = (step: 'reading' | 'writing' | 'verifying' | 'again', don
 const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof banner === 'object' && banner !== null;
 
 export class Session {
-  description!: Description;
+  readonly state = new SessionState();
   /** The name of the robot's file; empty while a file is being loaded. */
   file = '';
   /** The robot.toml of the page's robot. */
@@ -105,19 +88,12 @@ export class Session {
   robotSection: Uint8Array = new Uint8Array();
   /** The last frame. */
   last: Frame | null = null;
-  /** The robot's activity: a gait or a command; empty if unknown. */
-  gait = '';
-  /** The robot's pace, percent. */
-  private pace = FULL_PACE;
   /** Voltage of the simulated board's supply, V. */
   volts = 5;
   /** The names of the inputs whose contacts are closed in the simulation. */
   readonly closedInputs = new Set<string>();
-  /** The servo model, by its name in the description. */
-  servos = 'own';
   /** True if the page may send lines of its own. */
   mayAsk = false;
-  link!: Link;
   dialogue!: Dialogue;
   private deadman!: Deadman;
   /** Number of unanswered lines that make the robot walk. */
@@ -126,11 +102,8 @@ export class Session {
   private stopCount = 0;
   /** The time at which the robot's last line arrived, on the page's clock, ms. */
   private lastLineAt = performance.now();
-  /** Number of banners received: a board that restarts has lost its unsaved settings. */
-  bannerCount = 0;
   /** The firmware, which is the same for every robot. */
   private firmware: Uint8Array | null = null;
-  private floorSetting: Floor | null = null;
   private bootLoader: Uint8Array | null = null;
   private readonly walkedPath = new WalkedPath();
   /**
@@ -139,8 +112,6 @@ export class Session {
   clock = 0;
   /** Resolves the promise of `waitForBanner`. */
   private resolveBanner: () => void = () => {};
-  /** The board's firmware and robot; undefined until known. */
-  private boardBanner: BoardBanner | undefined;
   /** True if a board without this firmware has the boot loader of a UNO. */
   hasBootLoader = false;
   /** True while a board on USB sends its poses. */
@@ -152,6 +123,33 @@ export class Session {
     readonly robot: Robot,
     private readonly listener: SessionListener,
   ) {}
+
+  get description(): Description {
+    // Only the time before the first robot has none, and then no view asks.
+    return this.state.description.value!;
+  }
+
+  get link(): Link {
+    return this.state.link.value!;
+  }
+
+  /** Calls `show` with the robot, if there is one, and with each later one. */
+  followRobot(show: (description: Description) => void): void {
+    this.state.description.subscribe((description) => description && show(description));
+  }
+
+  get servos(): string {
+    return this.state.servos.value;
+  }
+
+  get gait(): string {
+    return this.state.gait.value;
+  }
+
+  /** The board's firmware and robot; undefined until known. */
+  get banner(): BoardBanner | undefined {
+    return this.state.banner.value;
+  }
 
   /**
    * Loads a robot by its file name and restarts the simulated UNO with it; a real board stays connected. Throws an
@@ -199,7 +197,8 @@ export class Session {
   }
 
   private storeChanges(): void {
-    const { file, original, toml, floorSetting: floor, servos, volts } = this;
+    const { file, original, toml, servos, volts } = this;
+    const floor = this.state.floor.value;
     if (file !== '') browserStorage.putChanges({ file, original, toml, floor, servos, volts });
   }
 
@@ -208,27 +207,25 @@ export class Session {
     await this.change(this.original);
   }
 
-  private loadToml(toml: string, floorSetting = this.floorSetting, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
+  private loadToml(toml: string, floorSetting = this.state.floor.value, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
     const answer = this.robot.read(toml);
     if (isRefused(answer)) return answer;
-    [this.toml, this.floorSetting] = [toml, floorSetting];
+    this.toml = toml;
     [this.original, this.predictions] = originalFile;
-    this.description = answer;
     this.robotSection = this.robot.section();
-    this.robot.setFloor(this.floor);
+    this.robot.setFloor(floorSetting ?? answer.floor);
     this.walkedPath.clear();
     this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
-    this.listener.onRobot(answer);
+    batch(() => {
+      this.state.floor.value = floorSetting;
+      this.state.description.value = answer;
+    });
     return null;
   }
 
   /** Restarts a simulated board with the page's robot; a real board keeps its own robot. */
   private async restartBoard(keepsEeprom: boolean): Promise<void> {
     if (!this.isReal) await this.simulate(keepsEeprom && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
-    else {
-      this.listener.onLink(this.link);
-      if (this.boardBanner !== undefined) this.listener.onBanner(this.boardBanner);
-    }
   }
 
   /** Firmware and robot as one image of flash. */
@@ -243,22 +240,17 @@ export class Session {
 
   /** True if this firmware answers. */
   get isFirmwareAnswering(): boolean {
-    return this.boardBanner !== undefined && this.boardBanner !== null;
-  }
-
-  /** The board's firmware and robot; undefined until known. */
-  get banner(): BoardBanner | undefined {
-    return this.boardBanner;
+    return this.banner !== undefined && this.banner !== null;
   }
 
   /** True if the board has exactly this robot. */
   get hasThisRobot(): boolean {
-    return isBanner(this.boardBanner) && this.boardBanner.robot?.hash === this.description.hash;
+    return isBanner(this.banner) && this.banner.robot?.hash === this.description.hash;
   }
 
   /** The board's robot by its banner, if it is not the page's robot; else null. */
   get otherRobot(): { name: string; hash: string } | null {
-    return isBanner(this.boardBanner) && !this.hasThisRobot ? this.boardBanner.robot : null;
+    return isBanner(this.banner) && !this.hasThisRobot ? this.banner.robot : null;
   }
 
   /** Time since the robot's last line, s. */
@@ -269,7 +261,7 @@ export class Session {
   /** True if the link leads to a real board. */
   get isReal(): boolean {
     // Without a robot there is no link yet.
-    return this.link !== undefined && this.link.kind !== 'simulated';
+    return this.link !== null && this.link.kind !== 'simulated';
   }
 
   /** Starts a new simulated UNO with this robot at power-on; `saved` is the EEPROM of the previous one. */
@@ -301,11 +293,11 @@ export class Session {
     // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
     const isRadio = link.kind === 'radio';
     const hasSentBanner = !isRadio && (await this.waitForBanner());
-    for (let n = 0; !hasSentBanner && this.boardBanner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
+    for (let n = 0; !hasSentBanner && this.banner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
       if (this.link === link && (await this.checkAnswer())) this.setBoardBanner('unknown');
     }
     if (this.link !== link) return false;
-    if (this.boardBanner) await this.watch();
+    if (this.banner) await this.watch();
     else if (isRadio) this.reportSilentModule(link);
     else await this.identify(link);
     return this.link === link;
@@ -323,13 +315,13 @@ export class Session {
   private async handleReach(link: Link, isInReach: boolean): Promise<void> {
     if (this.link !== link) return;
     this.deadman.letGo();
-    this.listener.onSilent(!isInReach);
+    this.state.isSilent.value = !isInReach;
     const message = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
     this.listener.onTrouble('port', isInReach ? null : message);
     if (!isInReach) return;
     for (let n = 0; n < MAX_ATTEMPTS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
-      if (!this.boardBanner) this.setBoardBanner('unknown');
+      if (!this.banner) this.setBoardBanner('unknown');
       this.listener.onTrouble('board', null);
       return this.watch();
     }
@@ -413,7 +405,7 @@ export class Session {
    * to be there.
    */
   async stop(): Promise<boolean> {
-    if (!this.isReal || !this.boardBanner) return true;
+    if (!this.isReal || !this.banner) return true;
     const { link, dialogue } = this;
     const answer = dialogue.ask(WORDS.stop).catch(() => null);
     return Promise.race([answer, link.wait(STOP_TIMEOUT_MS)]).then(Boolean);
@@ -422,14 +414,15 @@ export class Session {
   private async attach(link: Link): Promise<void> {
     this.dialogue?.end();
     await this.link?.close();
-    this.link = link;
-    this.boardBanner = undefined;
-    this.isWatching = false;
-    this.mayAsk = false;
-    this.startDialogue();
-    this.setGait('');
+    batch(() => {
+      this.state.link.value = link;
+      this.state.banner.value = undefined;
+      this.isWatching = false;
+      this.mayAsk = false;
+      this.startDialogue();
+      this.setGait('');
+    });
     for (const cause of ['line', 'board', 'fault'] as const) this.listener.onTrouble(cause, null);
-    this.listener.onLink(link);
   }
 
   private startDialogue(): void {
@@ -441,8 +434,8 @@ export class Session {
         const status = parseStatus(line);
         if (status) this.handleStatus(status);
       },
-      onSilent: (isSilent) => this.listener.onSilent(isSilent),
-      onStopping: (isStopping) => this.listener.onStopping(isStopping),
+      onSilent: (isSilent) => (this.state.isSilent.value = isSilent),
+      onStopping: (isStopping) => (this.state.isStopping.value = isStopping),
     });
     this.deadman = new Deadman(this.dialogue);
   }
@@ -469,7 +462,7 @@ export class Session {
 
   private handleBanner(line: string): void {
     const { dialogue } = this;
-    const bannerNumber = ++this.bannerCount;
+    const bannerNumber = ++this.state.bannerCount.value;
     this.setGait('stand');
     this.setPace(FULL_PACE);
     this.isWatching = false;
@@ -481,29 +474,26 @@ export class Session {
     this.mayAsk = false;
     void this.link.wait(BOOT_TIMEOUT_MS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may use the line.
-      if (this.bannerCount !== bannerNumber || dialogue.isClosed) return;
+      if (this.state.bannerCount.value !== bannerNumber || dialogue.isClosed) return;
       this.mayAsk = true;
       if (this.isReal && !this.isWatching) void this.watch();
     });
   }
 
   private setBoardBanner(banner: BoardBanner): void {
-    this.boardBanner = banner;
-    this.listener.onBanner(banner);
+    this.state.banner.value = banner;
   }
 
   private setPace(percent: number): void {
     // A cycle whose pace changes is not measured.
-    if (percent !== this.pace) this.walkedPath.clear();
-    this.pace = percent;
-    this.listener.speed(percent);
+    if (percent !== this.state.pace.value) this.walkedPath.clear();
+    this.state.pace.value = percent;
   }
 
   private setGait(gait: string): void {
-    this.gait = gait;
+    this.state.gait.value = gait;
     this.restoreDeadmanIfIdle();
     this.walkedPath.clear();
-    this.listener.onActivity(gait);
   }
 
   /** Sends a line and returns its answer. Shows an error, unless the line is quiet, and returns null. */
@@ -558,7 +548,7 @@ export class Session {
     const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === 'none');
     // The page has missed the start of this activity, for example because its link was cut.
     if (gait !== this.gait && !isKnown) this.setGait(gait);
-    this.listener.onStatus(status);
+    this.state.status.value = status;
   }
 
   /** Presses the reset button of the board. */
@@ -579,7 +569,7 @@ export class Session {
     const endAddress = bytes.length + (isRobotAlone ? this.description.start : 0);
     await this.withBootLoader(link, async ({ Board, needsUno, upload }, line) => {
       const board = !link.mayBeNano || !needsUno(endAddress) ? Board.Unknown : this.listener.confirmUno() ? Board.Uno : Board.Nano;
-      this.boardBanner = undefined;
+      this.state.banner.value = undefined;
       this.isWatching = false;
       this.mayAsk = false;
       await upload(line, bytes, isRobotAlone, board, progress);
@@ -616,7 +606,7 @@ export class Session {
       this.listener.onTrouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
       return 'it sends no banner of this firmware';
     }
-    const boardHash = isBanner(this.boardBanner) ? this.boardBanner.robot?.hash : null;
+    const boardHash = isBanner(this.banner) ? this.banner.robot?.hash : null;
     return hash !== null && boardHash !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
@@ -663,14 +653,14 @@ export class Session {
    */
   measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.pace) : null;
+    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.state.pace.value) : null;
   }
 
   /**
    * The predictions that came with the page; null unless the robot, its floor and its servos are those of the file.
    */
   get filePredictions(): Predictions | null {
-    return this.toml === this.original && this.floorSetting === null && this.servos === 'own' ? this.predictions : null;
+    return this.toml === this.original && this.state.floor.value === null && this.servos === 'own' ? this.predictions : null;
   }
 
   /** Puts the robot back to its start on the floor. */
@@ -681,18 +671,18 @@ export class Session {
 
   /** Floor, mass, feet and leg drive: as set in the page, else as in robot.toml. */
   get floor(): Floor {
-    return this.floorSetting ?? this.description.floor;
+    return this.state.floor.value ?? this.description.floor;
   }
 
   /** Sets floor, mass, feet and leg drive; null restores the values of robot.toml. */
   setFloor(floor: Floor | null): void {
-    this.floorSetting = floor;
+    this.state.floor.value = floor;
     this.robot.setFloor(this.floor);
     this.storeChanges();
   }
 
   setServos(name: string): void {
-    this.servos = name;
+    this.state.servos.value = name;
     this.robot.setServos(name);
     this.storeChanges();
   }

@@ -88,7 +88,7 @@ test('a board with another robot of the list is reported, and one press shows it
   await page.locator('#trouble', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
   await page.evaluate(() => {
     const { lizard } = window;
-    lizard.boardBanner.robot.hash = '00000000';
+    lizard.banner.robot.hash = '00000000';
     return lizard.change(lizard.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
   });
   await page.locator('#trouble', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();

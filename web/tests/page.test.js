@@ -55,31 +55,21 @@ test('a gait started while a status is pending is not reverted', async () => {
   const page = await openStanding();
   await page.evaluate(() => {
     const { lizard } = window;
-    const { listener } = lizard;
-    const originalOnActivity = listener.onActivity.bind(listener);
     window.reportedGaits = [];
-    listener.onActivity = (gait) => {
-      window.reportedGaits.push(gait);
-      originalOnActivity(gait);
-    };
+    lizard.state.gait.subscribe((gait) => window.reportedGaits.push(gait));
     void lizard.status();
     void lizard.ask('walk');
   });
   await advance(page, 500);
-  assert.deepEqual(await page.evaluate(() => window.reportedGaits), ['walk']);
+  assert.deepEqual(await page.evaluate(() => window.reportedGaits), ['stand', 'walk']);
 });
 
 test('a pace set while a status is pending is not reverted', async () => {
   const page = await openStanding();
   await page.evaluate(() => {
     const { lizard } = window;
-    const { listener } = lizard;
-    const originalSpeed = listener.speed.bind(listener);
     window.reportedPaces = [];
-    listener.speed = (percent) => {
-      window.reportedPaces.push(percent);
-      originalSpeed(percent);
-    };
+    lizard.state.pace.subscribe((percent) => window.reportedPaces.push(percent));
     // All lines arrive at once, as from a port that was busy.
     const { link } = lizard;
     const { onBytes } = link;
@@ -95,6 +85,20 @@ test('a pace set while a status is pending is not reverted', async () => {
   await advance(page, 100);
   assert.deepEqual(await page.evaluate(() => window.reportedPaces), [100, 60]);
   assert.equal(await page.locator('#speed').inputValue(), '60');
+});
+
+test('a pace that the robot has not confirmed does not stay on the slider', async () => {
+  const page = await openStanding();
+  await page.evaluate(() => {
+    window.lizard.link.write = async () => {};
+    const slider = document.querySelector('#speed');
+    slider.value = '50';
+    for (const name of ['input', 'change']) slider.dispatchEvent(new Event(name));
+  });
+  assert.equal(await page.locator('#speed-out').textContent(), '50 %');
+  await advance(page, 4000);
+  await page.locator('#speed-out', { hasText: '100 %' }).waitFor();
+  assert.equal(await page.locator('#speed').inputValue(), '100');
 });
 
 test('left turns left', async () => {

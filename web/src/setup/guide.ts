@@ -16,11 +16,12 @@ class BoardConsole implements Console {
   private readonly bannerCount: number;
 
   constructor(private readonly session: Session) {
-    ({ link: this.link, bannerCount: this.bannerCount } = session);
+    this.link = session.link;
+    this.bannerCount = session.state.bannerCount.value;
   }
 
   get isCurrent(): boolean {
-    return this.session.link === this.link && this.session.bannerCount === this.bannerCount;
+    return this.session.link === this.link && this.session.state.bannerCount.value === this.bannerCount;
   }
 
   async ask(line: string): Promise<Answer> {

@@ -1,5 +1,7 @@
 // Warns that the board has another robot than the page, which would draw and predict it wrongly. Searches for the
 // board's robot and offers to show it.
+import { effect } from '@preact/signals-core';
+
 import { files } from '../files';
 import { browserStorage } from '../kept';
 import { isRefused, Robot } from '../robot';
@@ -19,15 +21,17 @@ export class BoardRobot {
 
   /** `showRobot` loads a robot into the page. */
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly troubles: Troubles,
     private readonly showRobot: (known: KnownRobot) => void,
-  ) {}
+  ) {
+    effect(() => void this.update());
+  }
 
   /** Reports that the board has another robot; removes the message if it does not. */
-  async update(): Promise<void> {
-    const session = this.session();
-    const otherRobot = session.otherRobot;
+  private async update(): Promise<void> {
+    const { session } = this;
+    const { otherRobot } = session;
     if (!session.isReal || !otherRobot) return this.troubles.say('other', null);
     const knownRobot = await this.findByHash(otherRobot.hash);
     if (session.otherRobot?.hash !== otherRobot.hash) return;

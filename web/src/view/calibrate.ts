@@ -23,7 +23,7 @@ export class Calibrate {
   /** True after a line without an answer: the shown settings may differ from the robot's. */
   private mayBeOutdated = false;
 
-  constructor(private readonly session: () => Session) {
+  constructor(private readonly session: Session) {
     element('cal-read').addEventListener('click', () => void this.read());
     element('cal-save').addEventListener('click', () => void this.send(WORDS.save));
     for (const word of [WORDS.load, WORDS.factory]) {
@@ -31,11 +31,12 @@ export class Calibrate {
     }
     const panel = element<HTMLDetailsElement>('calibrate');
     panel.addEventListener('toggle', () => isShown(panel) && void this.read());
+    session.state.status.subscribe(() => this.refresh());
   }
 
   /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
-    const answer = await this.session().ask(WORDS.cal, true);
+    const answer = await this.session.ask(WORDS.cal, true);
     const board = await loadBoard().catch((error: unknown) => (this.message.textContent = messageOf(error)));
     const settings = answer && typeof board === 'object' && board.readCalibration(answer.notes);
     if (!settings) return;
@@ -44,8 +45,8 @@ export class Calibrate {
     settings.servos.forEach((servo, n) => this.show(n, servo));
   }
 
-  /** Reads the settings again if the shown ones may be wrong; call it when the robot answers again. */
-  refresh(): void {
+  /** Reads the settings again, now that the robot answers, if the shown ones may be wrong. */
+  private refresh(): void {
     if (this.mayBeOutdated) void this.read();
   }
 
@@ -59,7 +60,7 @@ export class Calibrate {
   }
 
   private async send(line: string): Promise<void> {
-    const answer = await this.session().ask(line);
+    const answer = await this.session.ask(line);
     this.message.textContent = answer?.text ?? '';
     this.mayBeOutdated ||= answer === null;
     if (answer && !answer.ok) await this.read();

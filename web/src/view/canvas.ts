@@ -44,3 +44,8 @@ export function element<T extends HTMLElement>(id: string): T {
   if (!node) throw new Error(`the page has no #${id}`);
   return node as T;
 }
+
+/** Sets the text of an element unless it is there already, so that nothing is laid out or read aloud again. */
+export function setText(box: HTMLElement, text: string): void {
+  if (box.textContent !== text) box.textContent = text;
+}

@@ -1,7 +1,10 @@
 // A button for each gait and each routine. A gait's button also shows the predicted displacement per cycle, and the
 // share of the servos' torque-speed line that the gait uses.
-import type { Description, GaitPrediction, Displacement } from '../robot';
-import type { Answer } from '../link/dialogue';
+import { effect } from '@preact/signals-core';
+
+import type { Predictor } from '../predictor';
+import type { Description, Displacement } from '../robot';
+import type { Session } from '../session';
 import { WORDS } from '../words';
 import { element } from './canvas';
 import { make } from './make';
@@ -26,16 +29,14 @@ export function formatDisplacement(displacement: Displacement | null): string {
 export class Drive {
   private readonly buttonList = element('gaits');
   private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; loadLabel: HTMLElement; moves: boolean }[] = [];
-  private readonly predictions = new Map<string, GaitPrediction>();
-  /** The robot's pace, percent. */
-  private pace = 100;
-
   private readonly message = element('drive-said');
   /** The commands of the buttons in index.html, which every robot has. */
   readonly commands: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
-  /** `send` sends a line and resolves to its answer, or to null without an answer. */
-  constructor(private readonly send: (line: string) => Promise<Answer | null>) {
+  constructor(
+    private readonly session: Session,
+    private readonly predictor: Predictor,
+  ) {
     document.addEventListener('click', (event) => {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
       if (button?.dataset.command) void this.ask(button.dataset.command);
@@ -43,20 +44,22 @@ export class Drive {
     document.addEventListener('keydown', (event) => {
       if (event.key === 'Escape') void this.ask(WORDS.stop);
     });
+    session.followRobot((description) => this.showRobot(description));
+    session.state.gait.subscribe((gait) => this.showActivity(gait));
+    effect(() => this.showPredictions());
   }
 
   /** Sends a button's line; a refusal is shown beside the buttons until a line is accepted. */
   async ask(line: string): Promise<void> {
-    const answer = await this.send(line);
+    const answer = await this.session.ask(line);
     if (!answer) return;
     this.message.hidden = answer.ok;
     this.message.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
   /** Shows the buttons of another robot. */
-  showRobot({ gaits, routines }: Description): void {
+  private showRobot({ gaits, routines }: Description): void {
     this.buttonList.replaceChildren();
-    // A prediction names its gait by index, so the gaits come first.
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const note = make('span', {});
       const noteBox = make('small', {}, note);
@@ -68,36 +71,25 @@ export class Drive {
       this.buttonList.append(button);
       return { command, button, note, loadLabel, moves };
     });
-    this.predictions.clear();
     this.message.hidden = true;
-  }
-
-  /** Shows the prediction of the gait with an index. */
-  showPrediction(gait: number, prediction: GaitPrediction): void {
-    const entry = this.buttons[gait];
-    if (!entry) return;
-    this.predictions.set(entry.command, prediction);
-    entry.note.textContent = formatDisplacement(prediction);
-    this.showLoadShares();
-  }
-
-  /** Sets the robot's pace, percent, for which the shares of the torque-speed line are shown. */
-  setPace(percent: number): void {
-    if (percent === this.pace) return;
-    this.pace = percent;
-    this.showLoadShares();
+    // A board that stays connected continues its gait.
+    this.showActivity(this.session.gait);
   }
 
   /**
-   * Shows each gait's share of the torque-speed line at the robot's pace, and, once all are predicted, the gait with
-   * the largest.
+   * Shows each gait's predicted displacement and its share of the torque-speed line at the robot's pace, and, once all
+   * are predicted, the gait with the largest share.
    */
-  private showLoadShares(): void {
-    const isKnown = this.buttons.every(({ command, moves }) => !moves || this.predictions.has(command));
+  private showPredictions(): void {
+    const predictions = this.predictor.predictions.value;
+    const pace = this.session.state.pace.value;
+    const isKnown = this.buttons.every(({ command, moves }) => !moves || predictions.has(command));
     let [hardestGait, largestShare] = ['', 0];
-    for (const { command, loadLabel } of this.buttons) {
-      const { lines } = this.predictions.get(command) ?? {};
-      const share = lines?.[Math.ceil((this.pace * lines.length) / 100) - 1];
+    for (const { command, note, loadLabel } of this.buttons) {
+      const prediction = predictions.get(command) ?? null;
+      note.textContent = formatDisplacement(prediction);
+      const lines = prediction?.lines;
+      const share = lines?.[Math.ceil((pace * lines.length) / 100) - 1];
       const isTight = share !== undefined && share >= HIGH_LOAD_SHARE;
       loadLabel.classList.toggle('tight', isTight);
       loadLabel.textContent = share === undefined ? '' : `${isTight ? '⚠ ' : ''}line ${share.toFixed(2)}`;
@@ -106,24 +98,11 @@ export class Drive {
     const note = element('line-note');
     note.classList.toggle('warning', largestShare >= HIGH_LOAD_SHARE);
     const meaning = largestShare >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largestShare >= HIGH_LOAD_SHARE ? ': little is left' : '';
-    note.textContent = hardestGait === '' ? '' : `${hardestGait} asks most of its servos, ${largestShare.toFixed(2)} of their torque-speed line at ${this.pace} % of its pace${meaning}.`;
-  }
-
-  /** Returns the prediction for a command; null until it is known. */
-  predictionOf(command: string): GaitPrediction | null {
-    return this.predictions.get(command) ?? null;
-  }
-
-  /** Returns the gaits that have a prediction. */
-  predictedGaits(): { command: string; displacement: GaitPrediction }[] {
-    return this.buttons.flatMap(({ command }) => {
-      const displacement = this.predictions.get(command);
-      return displacement ? [{ command, displacement }] : [];
-    });
+    note.textContent = hardestGait === '' ? '' : `${hardestGait} asks most of its servos, ${largestShare.toFixed(2)} of their torque-speed line at ${pace} % of its pace${meaning}.`;
   }
 
   /** Marks the button of the robot's current gait or routine. */
-  showActivity(command: string): void {
+  private showActivity(command: string): void {
     for (const { button, command: buttonCommand } of this.buttons) {
       button.setAttribute('aria-pressed', String(buttonCommand === command));
     }

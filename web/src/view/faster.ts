@@ -3,7 +3,7 @@ import { files } from '../files';
 import { type SearchReport, type BestGait, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
 import type { Session } from '../session';
-import { element } from './canvas';
+import { element, setText } from './canvas';
 import { tableRow } from './make';
 import { setUpNumberInput } from './number';
 import { formatFigures } from './trial';
@@ -41,7 +41,7 @@ export class FasterView {
   private module: Promise<WebAssembly.Module> | null = null;
 
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly editor: GaitEditor,
   ) {
     const { settings } = this;
@@ -55,7 +55,7 @@ export class FasterView {
 
   /** Ends the search if the robot has changed, since its result would not fit. */
   endIfRobotChanged(): void {
-    if (this.toml === '' || this.session().toml === this.toml) return;
+    if (this.toml === '' || this.session.toml === this.toml) return;
     this.toml = '';
     this.resultBox.hidden = true;
     if (!this.search) return this.say('');
@@ -67,7 +67,7 @@ export class FasterView {
   private begin(): void {
     const bars = this.editor.gait();
     if (!bars) return this.say('There is no gait to start from.');
-    const { toml, floor, servos } = this.session();
+    const { toml, floor, servos } = this.session;
     this.toml = toml;
     this.reference = bars;
     this.referenceTrial = this.best = null;
@@ -149,14 +149,14 @@ export class FasterView {
   private async compare(): Promise<void> {
     const { reference, best } = this;
     if (!reference || !best) return;
-    const { robot, toml, isReal } = this.session();
+    const { robot, toml, isReal } = this.session;
     // This change only put the found gait into the robot, so the result stays.
     if (!isReal) this.toml = robot.putGait(toml, best.bars);
     await this.editor.compare(reference, best.bars, element('faster-ways'));
   }
 
   private say(text: string): void {
-    if (this.message.textContent !== text) this.message.textContent = text;
+    setText(this.message, text);
   }
 }
 

@@ -41,10 +41,11 @@ export class FitView {
   private work: Work = { isOver: true, stops: new Set() };
 
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly parts: PartsView,
   ) {
     this.whereButton.addEventListener('click', () => this.parts.set3d(true));
+    session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
 
   /** Takes the lengths of the session's robot. */
@@ -53,7 +54,7 @@ export class FitView {
     this.rangeRequest = null;
     this.cancelWork();
     this.parts.showRobot();
-    const { file, toml, original } = this.session();
+    const { file, toml, original } = this.session;
     // Not checked: a robot chosen from the list (whose file name is empty while it loads), an unchanged robot, and
     // changes made outside the room Build.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fittingLengths = robotLengths;
@@ -84,7 +85,7 @@ export class FitView {
   }
 
   private get isKnownToFit(): boolean {
-    return this.session().description.lengths.every(({ key, value }) => this.fittingLengths.get(key) === value);
+    return this.session.description.lengths.every(({ key, value }) => this.fittingLengths.get(key) === value);
   }
 
   /** Cancels the scheduled or running work, and clears the message. */
@@ -130,7 +131,7 @@ export class FitView {
   }
 
   private async checkRobot(robotLengths: Lengths, changedLengths: Lengths, work: Work): Promise<void> {
-    const { toml } = this.session();
+    const { toml } = this.session;
     if (await this.proveAndReport(toml, work)) {
       this.fittingLengths = robotLengths;
       return this.searchRange(work);
@@ -141,10 +142,10 @@ export class FitView {
     const nearest = await this.findNearest(changedLengths, work);
     if (work.isOver) return;
     this.message.textContent = refusalText;
-    const { lengths } = this.session().description;
+    const { lengths } = this.session.description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
     this.useButton.textContent = `Use what fits: ${names.join(', ')}`;
-    this.useButton.onclick = () => void this.session().change(nearest.text);
+    this.useButton.onclick = () => void this.session.change(nearest.text);
     this.useButton.hidden = false;
   }
 
@@ -160,7 +161,7 @@ export class FitView {
     };
     const [shortest, longest] = await Promise.all([findLimit(range[0]), findLimit(range[1])]);
     if (work.isOver) return;
-    const { unit } = this.session().description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
+    const { unit } = this.session.description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
     show([shortest, longest], `Can be printed from ${shortest} to ${longest} ${unit}.`);
   }
 
@@ -169,7 +170,7 @@ export class FitView {
    * wanted ones, to within one step. If `triesWantedFirst`, tries the wanted lengths first, since they may fit.
    */
   private async findNearest(wantedLengths: Lengths, work: Work, triesWantedFirst = false): Promise<{ lengths: Lengths; text: string }> {
-    const { toml } = this.session();
+    const { toml } = this.session;
     const lengthsAt = (share: number): Lengths =>
       new Map([...wantedLengths].map(([key, to]) => {
         const from = this.fittingLengths.get(key) ?? to;

@@ -1,4 +1,6 @@
 // The panel that writes the firmware and the robot to the board through its boot loader.
+import { effect } from '@preact/signals-core';
+
 import { loadBoard } from '../board';
 import { NO_WRITING_BY_RADIO, type Session } from '../session';
 import { messageOf } from '../trouble';
@@ -18,7 +20,7 @@ export class FlashView {
   private chosenImage: Uint8Array | null = null;
 
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly writer: Writer,
   ) {
     this.writeAllButton.addEventListener('click', () => this.write('all'));
@@ -33,13 +35,16 @@ export class FlashView {
       if (chosenImage) this.write(chosenImage);
     });
     element('flash-no').addEventListener('click', () => this.dropChosenImage());
+    effect(() => this.update());
   }
 
   /** Shows what can be written over the session's link, and drops a chosen file. */
-  update(): void {
-    const { link, robotSection: section, description } = this.session();
+  private update(): void {
+    const { link, robotSection: section, description } = this.session;
+    const isBusy = this.writer.isBusy.value;
+    if (!link) return;
     this.dropChosenImage();
-    for (const control of [this.fileInput, this.writeAllButton, this.writeRobotButton]) control.disabled = this.writer.isBusy || link.kind === 'radio';
+    for (const control of [this.fileInput, this.writeAllButton, this.writeRobotButton]) control.disabled = isBusy || link.kind === 'radio';
     const radioNote = `Nothing can be written to the ${link.name}: ${NO_WRITING_BY_RADIO}.`;
     const cableNote =
       `Writes to the ${link.name} by its boot loader, verifies, and starts it. The firmware is the same for every robot; what is saved in the board stays. ` +
@@ -72,7 +77,7 @@ export class FlashView {
       ? 'It is lizard firmware.'
       : 'It is not this firmware: with it the board is no longer a lizard, until firmware and robot are written again.';
     element('flash-what').textContent =
-      `${file.name}, ${this.chosenImage.length} bytes. ${kindText} Write it to the ${this.session().link.name}?`;
+      `${file.name}, ${this.chosenImage.length} bytes. ${kindText} Write it to the ${this.session.link.name}?`;
     this.question.hidden = false;
     element('flash-no').focus();
   }

@@ -57,7 +57,7 @@ export class GaitsView {
 
   constructor(
     module: WebAssembly.Module,
-    private readonly session: () => Session,
+    private readonly session: Session,
     ask: (line: string) => Promise<unknown>,
     writer: Writer,
     compare: GaitEditor['compare'],
@@ -65,6 +65,7 @@ export class GaitsView {
     this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', editedGait: () => this.gait, change: (key, value) => this.changeGait({ [key]: value }) });
     this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.changeGait(gait), compare });
     this.panel.addEventListener('toggle', () => this.showRobot());
+    session.followRobot(() => this.showRobot());
     this.templateList.addEventListener('change', () => this.editTemplate());
     this.nameInput.addEventListener('input', () => this.changeGait({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
     this.kindList.addEventListener('change', () => this.changeGait({ held: this.kindList.value === 'held' }));
@@ -77,10 +78,10 @@ export class GaitsView {
   }
 
   /** Shows the session's robot if the panel is open; an edited gait stays. */
-  showRobot(): void {
+  private showRobot(): void {
     this.faster.endIfRobotChanged();
     if (!isShown(this.panel)) return;
-    const { description, toml } = this.session();
+    const { description, toml } = this.session;
     if (toml === this.shownToml) return;
     this.shownToml = toml;
     this.fillTemplateList(description);
@@ -91,7 +92,7 @@ export class GaitsView {
 
   private fillTemplateList({ gaits }: Description): void {
     const chosen = this.templateList.value;
-    const { robot } = this.session();
+    const { robot } = this.session;
     const barGaits = gaits.flatMap(({ name }, number) => (robot.bars(number) ? [{ name, number }] : []));
     this.templateList.replaceChildren(...barGaits.map(({ name, number }) => new Option(name, String(number))));
     if (barGaits.some(({ number }) => String(number) === chosen)) this.templateList.value = chosen;
@@ -99,7 +100,7 @@ export class GaitsView {
 
   /** Starts to edit a copy of the chosen gait of the robot. */
   private editTemplate(): void {
-    const bars = this.templateList.value === '' ? null : this.session().robot.bars(Number(this.templateList.value));
+    const bars = this.templateList.value === '' ? null : this.session.robot.bars(Number(this.templateList.value));
     if (!bars) return this.trial.say('This robot has no gait of four bars to start from.');
     this.gait = { ...bars, name: this.nameInput.value || 'mine' };
     this.showGait();

@@ -1,9 +1,10 @@
 // The panel of the robot's status, which is requested twice a second while the page is visible.
 import type { Session } from '../session';
 import type { Status } from '../status';
-import { element } from './canvas';
+import { element, setText } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
+import type { Writer } from './writer';
 
 const REQUEST_PERIOD_MS = 500;
 
@@ -14,7 +15,10 @@ export class Health {
   /** True from a request until its answer. */
   private isAsking = false;
 
-  constructor(private readonly session: () => Session) {
+  constructor(
+    private readonly session: Session,
+    private readonly writer: Writer,
+  ) {
     for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'last reset', 'restarts']) {
       const value = make('dd', {}, '–');
       this.list.append(make('div', {}, make('dt', {}, name), value));
@@ -23,13 +27,10 @@ export class Health {
     setInterval(() => void this.requestStatus(), REQUEST_PERIOD_MS);
   }
 
-  /** True while something else, such as the boot loader, uses the link. */
-  isPaused = false;
-
   private async requestStatus(): Promise<void> {
-    if (this.isAsking || this.isPaused || document.hidden || !this.session().mayAsk) return;
+    if (this.isAsking || this.writer.isBusy.value || document.hidden || !this.session.mayAsk) return;
     this.isAsking = true;
-    const status = await this.session().status();
+    const status = await this.session.status();
     this.isAsking = false;
     if (status) this.show(status);
   }
@@ -48,7 +49,7 @@ export class Health {
     };
     for (const [name, text] of Object.entries(texts)) {
       const value = this.values.get(name);
-      if (value && value.textContent !== text) value.textContent = text;
+      if (value) setText(value, text);
     }
   }
 }

@@ -6,7 +6,7 @@ import { type Bars, type Description, type Four, type Frame, Robot } from '../ro
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { WORDS } from '../words';
-import { element } from './canvas';
+import { element, setText } from './canvas';
 import { saveFile } from './download';
 import { formatDisplacement } from './drive';
 import type { Floor } from './floor';
@@ -63,7 +63,7 @@ export class RecordView {
 
   /** `ask` sends a line, and `pace` returns the pace in percent. */
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly floor: Floor,
     private readonly ask: (line: string) => Promise<unknown>,
     private readonly pace: () => number,
@@ -84,10 +84,12 @@ export class RecordView {
     });
     element<HTMLButtonElement>('film').disabled = !this.filmFormat;
     this.updateButtons();
+    session.followRobot((description) => this.showRobot(description));
+    session.state.gait.subscribe((gait) => this.followGait(gait));
   }
 
   /** Shows another robot; the recording of the previous one is dropped. */
-  showRobot({ gaits }: Description): void {
+  private showRobot({ gaits }: Description): void {
     this.setRecording(false);
     this.recording = null;
     this.isReplaying = false;
@@ -106,7 +108,7 @@ export class RecordView {
 
   /** Adds a frame, which lasted `seconds`, to the recording, and advances the companion. */
   addFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
-    if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session().gait, seconds)) {
+    if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session.gait, seconds)) {
       this.setRecording(false);
       this.say(`The recording is full: ${MAX_SECONDS} s.`);
     }
@@ -117,7 +119,7 @@ export class RecordView {
   }
 
   /** Starts and stops the companion together with the robot, whose new gait is `gait`. */
-  followGait(gait: string): void {
+  private followGait(gait: string): void {
     const { companion, pair, isWaiting } = this;
     if (!companion || !pair) return;
     if (isWaiting && gait === pair.gaits[0]) {
@@ -161,7 +163,7 @@ export class RecordView {
     }
     const panel = pair?.output.closest('details');
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
-    const { last } = this.session();
+    const { last } = this.session;
     const start = { x: 0, y: 0, heading: 0 };
     const displacementOf = (frame: Frame | null) => (frame ? formatDisplacement(Robot.between(start, frame.place)) : '');
     this.say(`${pair.names[0]}: ${displacementOf(last)}. ${pair.names[1]}: ${displacementOf(companion.frame)}.`, pair.output);
@@ -251,12 +253,12 @@ export class RecordView {
 
   private chosenPair(): Pair {
     const gaits: [string, string] = [this.firstGaitList.value, this.secondGaitList.value];
-    return { toml: this.session().toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
+    return { toml: this.session.toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 
   /** Lets the page's robot walk the gait that a search has found, and the second robot the gait before the search. */
   async compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
-    const session = this.session();
+    const session = this.session;
     const toml = session.robot.putGait(session.toml, previousGait);
     this.say('The robot restarts with this gait…', output);
     const refusal = await restartWithGait(session, foundGait);
@@ -267,13 +269,13 @@ export class RecordView {
 
   /** Starts both robots in the same frame, each from its own starting place. */
   private async startBoth(pair: Pair): Promise<void> {
-    const session = this.session();
+    const session = this.session;
     const { toml, floor, servos, volts } = session;
     this.removeCompanion();
     this.say('Switching on the second robot…', pair.output);
     try {
       const companion = Companion.create(pair.toml, floor, servos, volts);
-      if (toml !== this.session().toml) return;
+      if (toml !== this.session.toml) return;
       await this.ask(WORDS.stop);
       session.returnToStart();
       this.floor.clearTracks();
@@ -300,7 +302,7 @@ export class RecordView {
     const hasRecording = recording !== null && recording.frames.length > 0 && !isRecording;
     const setButton = (id: string, text: string, isPressed: boolean, isEnabled = true) => {
       const button = element<HTMLButtonElement>(id);
-      if (button.textContent !== text) button.textContent = text;
+      setText(button, text);
       button.setAttribute('aria-pressed', String(isPressed));
       button.disabled = !isEnabled;
     };
@@ -313,6 +315,6 @@ export class RecordView {
   }
 
   private say(text: string, box = element('keep-said')): void {
-    if (box.textContent !== text) box.textContent = text;
+    setText(box, text);
   }
 }

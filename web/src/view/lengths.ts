@@ -14,15 +14,16 @@ export class Lengths {
 
   /** `offerValidLengths` searches for valid lengths in place of refused ones, and offers them. */
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly offerValidLengths: (edits: Edits) => void,
   ) {
-    element('lengths-reset').addEventListener('click', () => void this.session().restore());
+    element('lengths-reset').addEventListener('click', () => void this.session.restore());
     element('lengths-save').addEventListener('click', () => this.download());
+    session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
 
   /** Shows the lengths of the session's robot. */
-  showRobot(lengths: Length[]): void {
+  private showRobot(lengths: Length[]): void {
     if (lengths.length !== this.inputs.size) this.buildInputs(lengths);
     for (const { key, value } of lengths) {
       const input = this.inputs.get(key);
@@ -46,7 +47,7 @@ export class Lengths {
   }
 
   private async changeLength(key: string): Promise<void> {
-    const session = this.session();
+    const session = this.session;
     const input = this.inputs.get(key);
     const value = input?.valueAsNumber;
     if (!input || value === undefined || !Number.isFinite(value)) return;
@@ -67,7 +68,7 @@ export class Lengths {
   }
 
   private download(): void {
-    const { toml, floor } = this.session();
+    const { toml, floor } = this.session;
     const refusal = downloadRobot(toml, floor);
     if (refusal) this.say(`This robot.toml lacks the settings of Legs, feet and floor: ${refusal.refused}`);
   }
@@ -75,6 +76,6 @@ export class Lengths {
   private say(message: string | null): void {
     this.refusalText.hidden = message === null;
     this.refusalText.textContent = message ?? '';
-    showOffers(null, this.session());
+    showOffers(null, this.session);
   }
 }

@@ -1,6 +1,7 @@
 // The maps of the singularities of the head's and the tail's five-bar over the angles of their left and right servo,
 // with the robot's current position.
 import type { Robot, Scene, SingularityMap } from '../robot';
+import type { Session } from '../session';
 import { element, surface } from './canvas';
 import { onPaletteChange, palette } from './palette';
 
@@ -99,8 +100,10 @@ class MapView {
 export class MapsView {
   private readonly maps = [new MapView(0), new MapView(1)];
 
-  setRobot(robot: Robot): void {
-    for (const map of this.maps) map.setRobot(robot);
+  constructor(session: Session) {
+    session.followRobot(() => {
+      for (const map of this.maps) map.setRobot(session.robot);
+    });
   }
 
   addPosition(scene: Scene): void {

@@ -1,6 +1,7 @@
 // The panel of margins: the distance of the pose from each singularity.
 import type { Description, Scene } from '../robot';
-import { element } from './canvas';
+import type { Session } from '../session';
+import { element, setText } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
 
@@ -8,8 +9,12 @@ export class MarginsView {
   private readonly panel = element<HTMLDetailsElement>('margins-panel');
   private bars: { row: HTMLElement; fill: HTMLElement; value: HTMLElement; limit: number }[] = [];
 
+  constructor(session: Session) {
+    session.followRobot((description) => this.showRobot(description));
+  }
+
   /** Makes a bar with a mark at the limit for each margin of another robot. */
-  setRobot({ margins }: Description): void {
+  private showRobot({ margins }: Description): void {
     const list = element('margins');
     list.replaceChildren();
     this.bars = margins.map(({ name, limit }) => {
@@ -35,8 +40,7 @@ export class MarginsView {
   updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.bars.forEach(({ value }, index) => {
-      const text = scene?.margins[index]?.value.toFixed(3) ?? '–';
-      if (value.textContent !== text) value.textContent = text;
+      setText(value, scene?.margins[index]?.value.toFixed(3) ?? '–');
     });
   }
 }

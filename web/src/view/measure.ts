@@ -9,11 +9,12 @@ import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protoco
 import { TagTracker } from '../measure/seen';
 import { PictureSource } from '../measure/source';
 import type { FilmFunctions } from '../measure/worker';
-import type { Description, Gait, GaitPrediction } from '../robot';
+import type { Predictor } from '../predictor';
+import type { Description, Gait } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { WORDS } from '../words';
-import { element } from './canvas';
+import { element, setText } from './canvas';
 import { saveFile } from './download';
 import { make } from './make';
 import { ResultsView } from './measured';
@@ -75,15 +76,14 @@ export class MeasureView {
   private readonly userTicks = new Map<string, boolean>();
 
   /**
-   * `choices` returns the gaits predicted so far. `isSetUpOpen` returns true while the set-up is open: the robot must
-   * not be driven then, since hands may be in it.
+   * `isSetUpOpen` returns true while the set-up is open: the robot must not be driven then, since hands may be in it.
    */
   constructor(
-    private readonly session: () => Session,
-    private readonly choices: () => { command: string; displacement: GaitPrediction }[],
+    private readonly session: Session,
+    private readonly predictor: Predictor,
     private readonly isSetUpOpen: () => boolean,
   ) {
-    this.resultsView = new ResultsView(() => this.session().description.name);
+    this.resultsView = new ResultsView(() => this.session.description.name);
     const video = this.view.querySelector('video');
     if (!video) throw new Error('the page has no video for the camera');
     this.source = new PictureSource(video, (picture, seconds) => this.processPicture(picture, seconds));
@@ -102,11 +102,15 @@ export class MeasureView {
     this.startButton.addEventListener('click', () => void this.runAction(() => this.pressStart()));
     this.driverList.addEventListener('change', () => this.updateControls());
     document.addEventListener(ROOM_OPENED, () => this.room.hidden && this.switchCameraOff());
-    this.updateControls();
+    session.followRobot((description) => this.showRobot(description));
+    predictor.predictions.subscribe(() => this.tickMovingGaits());
+    session.state.gait.subscribe((activity) => this.protocol?.setActivity(activity));
+    session.state.isSilent.subscribe((isSilent) => isSilent && this.stop('the robot is silent'));
+    session.state.link.subscribe(() => this.followLink());
   }
 
   /** Ends driving, and lists the gaits of the robot that was chosen. */
-  showRobot({ gaits }: Description): void {
+  private showRobot({ gaits }: Description): void {
     this.stop('another robot was chosen');
     const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     const chosen = this.gaitList.value;
@@ -123,20 +127,20 @@ export class MeasureView {
   }
 
   /** Ticks the gaits whose predicted displacement is large enough; the user's own ticks stay. */
-  tickMovingGaits(): void {
-    const hasDisplacement = new Map(this.choices().map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= MIN_DISPLACEMENT.forwardMm || Math.abs(turn ?? 0) >= MIN_DISPLACEMENT.turnDeg]));
+  private tickMovingGaits(): void {
+    const hasDisplacement = new Map(this.predictor.gaits.map(({ command, displacement: { forward, turn } }) => [command, Math.abs(forward ?? 0) >= MIN_DISPLACEMENT.forwardMm || Math.abs(turn ?? 0) >= MIN_DISPLACEMENT.turnDeg]));
     for (const box of this.gaitBoxes.querySelectorAll('input')) box.checked = this.userTicks.get(box.name) ?? hasDisplacement.get(box.name) ?? false;
   }
 
   /** Ends driving for an external reason, and stops the robot. */
-  stop(reason: string): void {
+  private stop(reason: string): void {
     this.protocol?.stop(reason);
   }
 
   /** Ends driving after a change of the link, and preselects the page as the driver of a real robot. */
-  changeLink(isReal: boolean): void {
+  private followLink(): void {
     this.protocol?.end('the link to the robot has changed');
-    this.driverList.value = isReal ? 'page' : 'other';
+    this.driverList.value = this.session.isReal ? 'page' : 'other';
     this.updateControls();
   }
 
@@ -150,17 +154,12 @@ export class MeasureView {
     this.protocol?.noteReceived(line);
   }
 
-  /** Takes the robot's activity: its gait or another command that it carries out. */
-  noteActivity(activity: string): void {
-    this.protocol?.setActivity(activity);
-  }
-
   /** Updates the texts about the last pictures; called several times per second. */
   updateNumbers(): void {
     if (this.room.hidden || this.view.hidden) return;
     const { picturesPerSecond: rate, hiddenTagsMessage: trouble, searchMs: ms } = this.tracker;
-    this.setText('measure-rate', `${rate.toFixed(0)} pictures a second, each looked at in ${ms.toFixed(0)} ms`);
-    this.setText('measure-seen', trouble || 'All five tags are seen.');
+    setText(element('measure-rate'), `${rate.toFixed(0)} pictures a second, each looked at in ${ms.toFixed(0)} ms`);
+    setText(element('measure-seen'), trouble || 'All five tags are seen.');
     element('measure-seen').classList.toggle('refusal', trouble !== '');
   }
 
@@ -248,7 +247,7 @@ export class MeasureView {
   /** Acts as the start button says: starts or ends recording or driving, or measures the film file again. */
   private async pressStart(): Promise<void> {
     if (this.task === 'record') return this.measureWalks(this.wholeFilmWalks);
-    if (this.task === 'drive') return void this.session().ask(WORDS.stop);
+    if (this.task === 'drive') return void this.session.ask(WORDS.stop);
     if (this.hasFilm) return this.measureWalks(this.wholeFilmWalks);
     const isPageDriving = this.driverList.value === 'page';
     const gaits = isPageDriving ? this.drivableGaits() : [];
@@ -262,7 +261,7 @@ export class MeasureView {
 
   /** Returns the ticked gaits. Throws the reason why the page cannot drive. */
   private drivableGaits(): Gait[] {
-    const session = this.session();
+    const session = this.session;
     const ticked = [...this.gaitBoxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
     const gaits = session.description.gaits.filter(({ command }) => ticked.includes(command));
     if (this.isSetUpOpen()) throw new Error('Hands may be in the robot: leave the set-up first.');
@@ -274,14 +273,14 @@ export class MeasureView {
 
   /** Lets the robot walk the gaits, and measures the walks; also those before an interruption. */
   private async driveGaits(gaits: Gait[]): Promise<void> {
-    const session = this.session();
+    const session = this.session;
     const { cycles, pause } = this.values;
     const speed = this.values.speed ?? 100;
     const protocol = new Protocol({
       ask: async (line) => (await session.ask(line))?.ok === true,
       now: () => this.source.now,
       wait: (seconds) => session.link.wait(1000 * seconds),
-      predictions: () => this.choices().map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
+      predictions: () => this.predictor.gaits.map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
       putBack: () => this.waitUntilPutBack(protocol),
       say: (text) => this.say(text),
     });
@@ -305,7 +304,7 @@ export class MeasureView {
 
   /** Returns the walks with the gaits' names in robot.toml in place of their commands. */
   private withGaitNames(walks: Walk[]): AskedWalk[] {
-    const { gaits } = this.session().description;
+    const { gaits } = this.session.description;
     return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
   }
 
@@ -332,7 +331,7 @@ export class MeasureView {
     const filmHelper = await this.getFilmHelper();
     const { height = null, ruler } = this.values;
     try {
-      const results = await filmHelper.ask((functions) => functions.measure({ toml: this.session().toml, speed, height, ruler: ruler ?? 100, walks }));
+      const results = await filmHelper.ask((functions) => functions.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
       this.resultsView.show(results.gaits);
       troubles.push(...results.troubles);
     } catch (error) {
@@ -366,12 +365,7 @@ export class MeasureView {
   }
 
   private say(text: string, isTrouble = false): void {
-    this.setText('measure-said', text);
+    setText(element('measure-said'), text);
     element('measure-said').classList.toggle('refusal', isTrouble && text !== '');
-  }
-
-  private setText(id: string, text: string): void {
-    const box = element(id);
-    if (box.textContent !== text) box.textContent = text;
   }
 }

@@ -9,7 +9,7 @@ const nameIn = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ??
 export class OwnRobot {
   /** `loadFile` loads a robot by its file name; `listNames` shows the names of the robots that are put aside. */
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly troubles: Troubles,
     private readonly loadFile: (file: string) => Promise<void>,
     private readonly listNames: (names: string[]) => void,
@@ -22,7 +22,7 @@ export class OwnRobot {
    * replaced it.
    */
   putAside(previous: SavedChanges | null): void {
-    if (!previous || previous.toml === previous.original || previous.toml === this.session().toml) return;
+    if (!previous || previous.toml === previous.original || previous.toml === this.session.toml) return;
     this.storeAside([previous, ...browserStorage.getPutAside().filter(({ toml }) => toml !== previous.toml)]);
     this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', act: () => void this.restore() });
   }
@@ -35,7 +35,7 @@ export class OwnRobot {
     if (!ownRobot) return;
     const previous = browserStorage.getChanges();
     await this.loadFile(ownRobot.file);
-    const session = this.session();
+    const session = this.session;
     // If the robot's file has changed since then, the stored text itself is loaded.
     if (!(await session.restoreSaved(ownRobot)) && (await session.change(ownRobot.toml))) return;
     this.storeAside(robotsAside.filter((_, n) => n !== index));

@@ -1,4 +1,5 @@
 // The slider for the pace of all gaits; it also shows the pace that the robot reports.
+import type { Session } from '../session';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
@@ -9,20 +10,26 @@ export class Pace {
   private isPending = false;
 
   /** `ask` sends a line and resolves with its answer. */
-  constructor(ask: (line: string) => Promise<unknown>) {
+  constructor(
+    private readonly session: Session,
+    ask: (line: string) => Promise<unknown>,
+  ) {
     this.slider.addEventListener('input', () => {
       this.isPending = true;
       this.showText(this.slider.valueAsNumber);
     });
     this.slider.addEventListener('change', () => {
       this.isPending = true;
-      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => (this.isPending = false));
+      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => {
+        this.isPending = false;
+        this.show(this.session.state.pace.value);
+      });
     });
-    this.showText(this.slider.valueAsNumber);
+    session.state.pace.subscribe((percent) => this.show(percent));
   }
 
   /** Shows the robot's pace in percent, unless the user is changing it. */
-  show(percent: number): void {
+  private show(percent: number): void {
     if (this.isPending) return;
     this.slider.value = String(percent);
     this.showText(percent);

@@ -43,7 +43,7 @@ export class PartsView {
   /** Stops the making of files; null while none are made. */
   private stopMaking: (() => void) | null = null;
 
-  constructor(private readonly session: () => Session) {
+  constructor(private readonly session: Session) {
     this.button3d.addEventListener('click', () => this.set3d(!this.is3d));
     // The guide describes the robot on the stage.
     this.panel.addEventListener('toggle', () => isShown(this.panel) && this.set3d(true));
@@ -73,7 +73,7 @@ export class PartsView {
 
   /** Shows the session's robot, if the stage is in 3D. */
   showRobot(): void {
-    const { toml, original } = this.session();
+    const { toml, original } = this.session;
     this.buttons.changed.hidden = toml === original;
     if (this.listedToml !== toml) {
       this.listedToml = toml;
@@ -193,7 +193,7 @@ export class PartsView {
   draw(frame: Frame | null): void {
     const { robotView, solids } = this;
     if (!robotView || !solids || !robotView.mayDraw() || !this.is3d) return;
-    const neutral = this.session().description.servos.map((servo) => servo.neutral);
+    const neutral = this.session.description.servos.map((servo) => servo.neutral);
     // The robot stands still while a step of the guide, or a pose in which two parts come too close, is shown.
     const isMoving = this.step === null && !this.meeting && frame?.scene != null;
     const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.meeting?.pose ?? neutral, [0, 0, 0, 0]];
@@ -213,7 +213,7 @@ export class PartsView {
   private async makeFiles(selection: 'all' | 'changed'): Promise<void> {
     // While files are made, the button stops that.
     if (this.stopMaking) return this.stopMaking();
-    const { toml, original, file } = this.session();
+    const { toml, original, file } = this.session;
     const bar = element<HTMLProgressElement>('parts-progress');
     const activityTexts = { prove: 'Proving that no two parts meet', make: 'Making the files' };
     const button = this.buttons[selection];
@@ -260,7 +260,7 @@ export class PartsView {
   private savedText({ paths, count, least: leastMm }: PartsArchive, selection: 'all' | 'changed'): string {
     const distanceText = leastMm === null ? '' : ` No two parts come nearer than ${leastMm.toFixed(2)} mm at any pose that the guard accepts.`;
     if (selection === 'all') return `${count} files.${distanceText}`;
-    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files are not those of ${this.session().file}.toml:`;
+    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files are not those of ${this.session.file}.toml:`;
   }
 
   private listFiles(paths: string[]): void {

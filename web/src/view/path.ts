@@ -60,7 +60,7 @@ export class PathView {
 
   constructor(
     module: WebAssembly.Module,
-    private readonly session: () => Session,
+    private readonly session: Session,
     ask: (line: string) => Promise<unknown>,
     writer: Writer,
   ) {
@@ -80,12 +80,13 @@ export class PathView {
       });
     }
     this.recordLines();
+    session.followRobot(() => this.showRobot());
   }
 
   /** Shows the plane of the session's robot, if the panel is open; a drawn line stays. */
-  showRobot(): void {
+  private showRobot(): void {
     if (!isShown(this.panel)) return;
-    const { toml } = this.session();
+    const { toml } = this.session;
     if (toml === this.shownToml) return;
     this.shownToml = toml;
     this.showPlane(this.gesture.points.length > 0);
@@ -93,7 +94,7 @@ export class PathView {
 
   /** Shows the plane of the chosen end, head or tail, with the drawn line if `isKept`, else with the chosen shape. */
   private showPlane(isKept = false): void {
-    this.reachArea = this.session().robot.reachArea(this.gesture.end === 'head' ? 0 : 1);
+    this.reachArea = this.session.robot.reachArea(this.gesture.end === 'head' ? 0 : 1);
     if (!this.reachArea) return;
     this.drawBackground(this.reachArea);
     const shape = SHAPES[this.shapeList.value];
@@ -170,7 +171,7 @@ export class PathView {
     if (document.activeElement !== this.nameInput) this.nameInput.value = gesture.name;
     this.endList.value = gesture.end;
     this.drawnLine.setAttribute('d', this.pathText(gesture.points));
-    this.smoothedLine.setAttribute('d', this.pathText((gesture.points.length > 0 && this.session().robot.path(gesture)) || []));
+    this.smoothedLine.setAttribute('d', this.pathText((gesture.points.length > 0 && this.session.robot.path(gesture)) || []));
   }
 
   /** Records lines that the user draws with a finger or a mouse. */

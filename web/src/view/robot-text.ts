@@ -26,7 +26,7 @@ export class RobotText {
 
   /** `onChange` is called when the text or its refusal has changed. */
   constructor(
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly writer: Writer,
     private readonly onChange: () => void,
   ) {
@@ -43,6 +43,7 @@ export class RobotText {
     element('robot-line').addEventListener('click', () => this.goToMistake());
     element('robot-link').addEventListener('click', () => void this.copyLink());
     element('robot-code').addEventListener('click', () => void this.toggleCode());
+    session.followRobot(() => this.showRobot());
     const opener = element<HTMLInputElement>('robot-open');
     opener.addEventListener('change', () => {
       const file = opener.files?.[0];
@@ -62,8 +63,8 @@ export class RobotText {
   }
 
   /** Shows the session's robot. */
-  showRobot(): void {
-    const { toml, file } = this.session();
+  private showRobot(): void {
+    const { toml, file } = this.session;
     // The name is empty while a file of the list is being read: then there is nothing to undo.
     if (file === '') this.undoStack = [];
     else if (this.shownToml !== '' && this.shownToml !== toml) this.undoStack = [...this.undoStack.slice(1 - MAX_UNDO_STEPS), this.shownToml];
@@ -87,8 +88,8 @@ export class RobotText {
   async loadFromAddress(hash = location.hash): Promise<boolean> {
     try {
       const encoded = addressParts(hash).get('robot');
-      const toml = encoded === null ? this.session().toml : await unpack(encoded);
-      return toml === this.session().toml || (await this.loadAndShow(toml));
+      const toml = encoded === null ? this.session.toml : await unpack(encoded);
+      return toml === this.session.toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.textBox);
       this.showRefusal({ refused: messageOf(error), meaning: null, line: null, key: '' });
@@ -106,7 +107,7 @@ export class RobotText {
 
   /** Loads a text as the robot, or shows it with its mistake; returns true if it was accepted. */
   async loadText(toml: string): Promise<boolean> {
-    const refusal = await this.session().change(toml);
+    const refusal = await this.session.change(toml);
     if (!refusal) return true;
     this.textBox.value = toml;
     this.showRefusal(refusal);
@@ -126,7 +127,7 @@ export class RobotText {
 
   /** Loads the text as the robot and writes it to the board on USB. */
   private async loadAndWrite(): Promise<void> {
-    const session = this.session();
+    const session = this.session;
     if (this.textBox.value !== session.toml) await this.loadAndShow(this.textBox.value);
     if (this.textBox.value !== session.toml) return;
     const message = element('robot-said');
@@ -154,7 +155,7 @@ export class RobotText {
     const current = { undoStack: this.undoStack, redoStack: this.redoStack, shownToml: this.shownToml };
     // A restored robot must not be recorded as a new change.
     Object.assign(this, { undoStack, redoStack, shownToml: toml });
-    const refusal = await this.session().change(toml);
+    const refusal = await this.session.change(toml);
     if (!refusal) return;
     Object.assign(this, current);
     this.showRefusal(refusal);
@@ -162,7 +163,7 @@ export class RobotText {
 
   private async copyLink(): Promise<void> {
     try {
-      await navigator.clipboard.writeText(await linkTo(this.session().toml));
+      await navigator.clipboard.writeText(await linkTo(this.session.toml));
       this.showMessage('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
       this.showMessage(`The link could not be copied: ${messageOf(error)}`);
@@ -178,7 +179,7 @@ export class RobotText {
     if (!isShown) return this.showMessage('');
     try {
       const { qrCode } = await import('./qr-code');
-      codeBox.replaceChildren(qrCode(await linkTo(this.session().toml)));
+      codeBox.replaceChildren(qrCode(await linkTo(this.session.toml)));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
       this.showMessage(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
     } catch (error) {

@@ -1,4 +1,5 @@
 // The panel of routines: their steps, as in the text of robot.toml, and a recorder that makes a routine of a drive.
+import { follow } from '../follow';
 import { LatestQuestion } from '../latest';
 import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
 import { robotHelper } from '../robot-helper';
@@ -45,7 +46,7 @@ export class RoutinesView {
   /** `pace` returns the pace in percent, and `ask` sends a line. */
   constructor(
     private readonly module: WebAssembly.Module,
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly text: RobotText,
     private readonly pace: () => number,
     private readonly ask: (line: string) => Promise<void>,
@@ -61,27 +62,15 @@ export class RoutinesView {
     onClick('undo', () => void this.text.undoLast());
     onClick('start', () => void this.startRoutine());
     onClick('write', () => void this.writeRobot());
-  }
-
-  /** Ends a recording, since the session has another robot. */
-  showRobot(): void {
-    if (this.recorder) this.toggleRecording();
-  }
-
-  /** Tells the recorder the gait that the robot does. */
-  setActivity(gait: string): void {
-    this.recorder?.setGait(gait, this.session().clock);
-    this.showRecording();
-  }
-
-  /** Tells the recorder the robot's pace in percent. */
-  setPace(percent: number): void {
-    this.recorder?.setPace(percent, this.session().clock);
-  }
-
-  /** Tells the recorder the phase of the robot's gait. */
-  setPhase(phase: number): void {
-    this.recorder?.setPhase(phase, this.session().clock);
+    const { state } = session;
+    session.followRobot(() => this.recorder && this.toggleRecording());
+    state.gait.subscribe((activity) => {
+      this.recorder?.setGait(activity, session.clock);
+      this.showRecording();
+    });
+    state.pace.subscribe((percent) => this.recorder?.setPace(percent, session.clock));
+    state.status.subscribe((answer) => answer && this.recorder?.setPhase(answer.phase, session.clock));
+    follow([state.floor, state.servos], () => this.predict());
   }
 
   /** Shows the routines of the text, if the panel is open. */
@@ -98,11 +87,11 @@ export class RoutinesView {
   }
 
   /** Predicts the path of the chosen routine, with its steps in the shown order. */
-  predict(): void {
+  private predict(): void {
     if (!isShown(this.panel)) return;
     const { chosenRoutine } = this;
     if (!chosenRoutine) return this.drawPath(null);
-    const { floor, servos } = this.session();
+    const { floor, servos } = this.session;
     this.pathQuestion ??= this.createPathQuestion();
     this.pathQuestion.ask({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
@@ -125,7 +114,7 @@ export class RoutinesView {
 
   /** Starts a recording, or ends it and offers to keep its steps. */
   private toggleRecording(): void {
-    const { description, gait, clock } = this.session();
+    const { description, gait, clock } = this.session;
     const steps = this.recorder?.steps(clock) ?? null;
     this.recorder = steps ? null : new Recorder(description.gaits, gait, this.pace(), clock);
     const button = element('routine-record');
@@ -138,7 +127,7 @@ export class RoutinesView {
 
   /** Shows the steps recorded so far. */
   private showRecording(): void {
-    if (this.recorder) this.say(`Recording: ${this.recorder.steps(this.session().clock).join(', ') || 'drive now'}`);
+    if (this.recorder) this.say(`Recording: ${this.recorder.steps(this.session.clock).join(', ') || 'drive now'}`);
   }
 
   /** Offers to store recorded steps under a name; without steps, hides the offer. */
@@ -186,7 +175,7 @@ export class RoutinesView {
   }
 
   private async startRoutine(): Promise<void> {
-    const session = this.session();
+    const session = this.session;
     // A simulated UNO restarts after each change of the robot.
     if (!session.isFirmwareAnswering) await session.waitForBanner();
     await this.ask(this.routineList.value.replaceAll('-', ' '));
@@ -194,7 +183,7 @@ export class RoutinesView {
 
   private async writeRobot(): Promise<void> {
     const message = element('routine-said');
-    if (!this.session().isReal) this.say(NO_BOARD);
+    if (!this.session.isReal) this.say(NO_BOARD);
     else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('routine-progress') });
   }
 

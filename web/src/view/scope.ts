@@ -1,7 +1,10 @@
 // The panel of the four servos' pulses: as an oscilloscope shows them, and their widths as numbers.
+import { effect } from '@preact/signals-core';
+
 import type { Description, Scene } from '../robot';
+import type { Session } from '../session';
 import { FREQUENCY_HZ } from '../uno/board';
-import { element, surface } from './canvas';
+import { element, setText, surface } from './canvas';
 import { make } from './make';
 import { palette, servoColour } from './palette';
 import { isShown } from './rooms';
@@ -34,8 +37,12 @@ export class ScopeView {
   /** True on the simulated board, whose pulses are known; a real board sends only its pose. */
   private hasPulses = true;
 
-  /** Shows another robot. */
-  setRobot({ servos }: Description): void {
+  constructor(session: Session) {
+    session.followRobot((description) => this.showRobot(description));
+    effect(() => this.changeLink(session.isReal));
+  }
+
+  private showRobot({ servos }: Description): void {
     this.pins = servos.map(({ pin }) => pin);
     this.pulses = [];
     const body = element('widths');
@@ -51,7 +58,7 @@ export class ScopeView {
   }
 
   /** Switches to a simulated or a real board. */
-  changeLink(isReal: boolean): void {
+  private changeLink(isReal: boolean): void {
     this.hasPulses = !isReal;
     this.note.hidden = !isReal;
     this.pulses = [];
@@ -77,9 +84,9 @@ export class ScopeView {
     this.rows.forEach(({ width, angle }, servo) => {
       const cycles = this.frameWidths[servo];
       const text = !this.hasPulses ? '–' : cycles ? (cycles / CYCLES_PER_US).toFixed(2) : 'none';
-      if (width.textContent !== text) width.textContent = text;
+      setText(width, text);
       const degrees = scene ? `${scene.angles[servo].toFixed(1)}°` : '–';
-      if (angle.textContent !== degrees) angle.textContent = degrees;
+      setText(angle, degrees);
     });
   }
 

@@ -1,6 +1,7 @@
 // The dialog of the first connection, in which a new robot is set up step by step. Every step can be left and entered
 // again.
 import type { Guide } from '../../generated/board';
+import { follow } from '../follow';
 import type { Link } from '../link/link';
 import { parseCalibration } from '../robot';
 import type { Session } from '../session';
@@ -62,7 +63,7 @@ export class Setup implements StepTools {
   private isUncalibrated = false;
 
   constructor(
-    private readonly getSession: () => Session,
+    readonly session: Session,
     readonly writer: Writer,
     private readonly connectBoard: () => Promise<void>,
   ) {
@@ -81,10 +82,9 @@ export class Setup implements StepTools {
       };
       this.servoButtons.append(button(`A${servo + 1} ${place}`, choose));
     });
-  }
-
-  get session(): Session {
-    return this.getSession();
+    const { link, banner, bannerCount, description } = session.state;
+    // A robot that restarts sends its banner again.
+    follow([link, banner, bannerCount, description, writer.isBusy], () => link.value && this.followLink());
   }
 
   /** Opens the dialog at the step at which it was left, or at the first step. */
@@ -127,7 +127,7 @@ export class Setup implements StepTools {
   }
 
   /** Updates the view for the session's link; ends the current action if it is another link. */
-  followLink(): void {
+  private followLink(): void {
     const { link, isReal } = this.session;
     if (link === this.lastLink) return this.update();
     const isGone = this.wasReal && !isReal;
@@ -141,7 +141,7 @@ export class Setup implements StepTools {
   }
 
   /** Updates the view after a possible change of board or robot. */
-  update(): void {
+  private update(): void {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
       this.dropAction(isChanged);
@@ -288,7 +288,7 @@ export class Setup implements StepTools {
 
   readonly redraw = (): void => {
     const { step, session } = this;
-    if (!session?.link) return;
+    if (!session.link) return;
     const index = STEPS.indexOf(step);
     this.stepList.querySelectorAll('button').forEach((stepButton, n) => {
       stepButton.toggleAttribute('aria-current', n === index);

@@ -40,16 +40,17 @@ export class Sketch {
 
   constructor(
     private readonly module: WebAssembly.Module,
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly fit: FitView,
   ) {
     this.panel.addEventListener('toggle', () => this.showRobot());
+    session.followRobot(() => this.showRobot());
   }
 
   /** Draws the session's robot in its neutral pose, if the panel is open. */
-  showRobot(): void {
+  private showRobot(): void {
     if (!isShown(this.panel)) return;
-    const { toml, description } = this.session();
+    const { toml, description } = this.session;
     if (toml === this.shownToml) return;
     this.shownToml = toml;
     this.draggedJoint = null;
@@ -80,7 +81,7 @@ export class Sketch {
   }
 
   private lengthsByKey(): Map<string, Length> {
-    return new Map(this.session().description.lengths.map((length) => [length.key, length]));
+    return new Map(this.session.description.lengths.map((length) => [length.key, length]));
   }
 
   private handleAnswer({ edits, text, refusal, scene, nearest, without, isLast, range }: Answer): void {
@@ -88,18 +89,18 @@ export class Sketch {
     if (range) this.applyRange(range);
     if (edits.length === 0) return;
     // This is the answer to `offerValidLengths`: the user typed a number that was refused.
-    if (isLast && !this.isDragEnding) return showOffers({ nearest, without }, this.session());
+    if (isLast && !this.isDragEnding) return showOffers({ nearest, without }, this.session);
     if (!isLast) this.fit.checkDragged(refusal ? null : text);
-    const { lengths } = this.session().description;
+    const { lengths } = this.session.description;
     const stayText = !isLast ? '' : nearest ? ` It is ${formatLengths(nearest.lengths, lengths)}, the nearest valid value.` : ' It stays as it was.';
     this.message.textContent = refusal ? `${describeRefusal(formatLengths(edits, lengths), edits, refusal, lengths)}${stayText}` : `${formatLengths(edits, lengths)}.`;
     this.message.classList.toggle('refusal', refusal !== null);
-    if (isLast) void this.endDrag(refusal ? (nearest?.text ?? null) : text).then(() => showOffers({ nearest: null, without }, this.session()));
+    if (isLast) void this.endDrag(refusal ? (nearest?.text ?? null) : text).then(() => showOffers({ nearest: null, without }, this.session));
   }
 
   /** Ends a drag with a new robot.toml; null if the robot stays. */
   private async endDrag(toml: string | null): Promise<void> {
-    const session = this.session();
+    const session = this.session;
     this.isDragEnding = false;
     this.draggedJoint = null;
     if (toml !== null && toml !== session.toml) await session.change(toml);
@@ -108,7 +109,7 @@ export class Sketch {
 
   /** Shows the session's unchanged robot again. */
   private showUnchanged(): void {
-    const { lengths } = this.session().description;
+    const { lengths } = this.session.description;
     this.slider.showRobot(lengths);
     this.fit.showRobot(lengths);
     this.askRobot();

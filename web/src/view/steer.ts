@@ -1,5 +1,6 @@
 // Steering by hand: keys, a stick on the screen or a gamepad give a direction, and the robot walks the gait for this
 // direction as long as the control is held.
+import type { PredictedGait } from '../predictor';
 import type { Displacement } from '../robot';
 import { WORDS } from '../words';
 import { element } from './canvas';
@@ -8,12 +9,6 @@ import { element } from './canvas';
 export interface Direction {
   ahead: number;
   left: number;
-}
-
-/** A gait and its displacement per cycle. */
-export interface GaitChoice {
-  command: string;
-  displacement: Displacement;
 }
 
 /** Dead zone of a stick, as a share of its full deflection. */
@@ -54,7 +49,7 @@ const KEY_DIRECTIONS: Record<string, Direction> = {
  * Returns the command of the best gait for a direction; null if none fits. Distances and turns are compared as shares
  * of the largest among the gaits; of gaits with the same direction, the one that moves farthest is taken.
  */
-export function gaitFor({ ahead, left }: Direction, choices: GaitChoice[]): string | null {
+export function gaitFor({ ahead, left }: Direction, choices: PredictedGait[]): string | null {
   const deflection = Math.hypot(ahead, left);
   if (deflection < DEAD_ZONE) return null;
   const largestOf = (componentOf: (displacement: Displacement) => number | null) => Math.max(...choices.map(({ displacement }) => Math.abs(componentOf(displacement) ?? 0)), 0);
@@ -101,7 +96,7 @@ export class Steering {
    * the robot must not be driven, and `pace` returns the pace in percent.
    */
   constructor(
-    private readonly choices: () => GaitChoice[],
+    private readonly choices: () => PredictedGait[],
     private readonly send: (line: string) => void,
     private readonly isDrivingForbidden: () => boolean,
     private readonly pace: () => number,

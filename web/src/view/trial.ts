@@ -49,7 +49,7 @@ export class TrialView {
 
   constructor(
     private readonly module: WebAssembly.Module,
-    private readonly session: () => Session,
+    private readonly session: Session,
     private readonly ask: (line: string) => Promise<unknown>,
     private readonly writer: Writer,
     private readonly editor: GaitEditor,
@@ -61,7 +61,7 @@ export class TrialView {
 
   /** Requests a trial of the edited gait. */
   predict(): void {
-    const { toml, floor, servos } = this.session();
+    const { toml, floor, servos } = this.session;
     const gait = this.editor.editedGait();
     if (!gait || toml === '') return;
     this.trialQuestion ??= this.createTrialQuestion();
@@ -103,14 +103,14 @@ export class TrialView {
     const gait = this.editor.editedGait();
     if (!gait) return;
     this.say('The robot restarts with this gait…');
-    const refusal = await tryGait(this.session(), gait, this.ask);
+    const refusal = await tryGait(this.session, gait, this.ask);
     this.say(refusal?.refused ?? `It does ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
   }
 
   private async writeToBoard(): Promise<void> {
     const gait = this.editor.editedGait();
     if (!gait) return;
-    const session = this.session();
+    const session = this.session;
     if (!session.isReal) return this.say(NO_BOARD);
     const refusal = await takeGait(session, gait);
     if (refusal) return this.say(refusal.refused);

@@ -30,11 +30,7 @@ export class World {
   private readonly voltsInput = element<HTMLInputElement>('servo-volts');
   private readonly supplyInput = element<HTMLInputElement>('supply');
 
-  /** `onChange` is called when the predictions have changed. */
-  constructor(
-    private readonly session: () => Session,
-    private readonly onChange: () => void,
-  ) {
+  constructor(private readonly session: Session) {
     this.driveList.addEventListener('change', () => this.applyFloor());
     for (const name of SLIDER_NAMES) {
       const input = this.sliderOf(name);
@@ -42,22 +38,22 @@ export class World {
       input.addEventListener('change', () => this.applyFloor());
     }
     element('floor-reset').addEventListener('click', () => {
-      this.session().setFloor(null);
+      this.session.setFloor(null);
       this.showRobot();
-      this.onChange();
     });
     const { supplyInput } = this;
     supplyInput.addEventListener('input', () => this.showText(supplyInput, supplyInput.valueAsNumber.toFixed(2)));
-    supplyInput.addEventListener('change', () => this.session().setSupply(supplyInput.valueAsNumber));
+    supplyInput.addEventListener('change', () => this.session.setSupply(supplyInput.valueAsNumber));
     this.servoList.addEventListener('change', () => this.chooseServos(this.servoList.value));
     const { voltsInput } = this;
     voltsInput.addEventListener('input', () => this.showText(voltsInput, voltsInput.valueAsNumber.toFixed(2)));
     voltsInput.addEventListener('change', () => this.chooseServos(`${this.servoList.value} at ${voltsInput.value}`));
+    session.followRobot(() => this.showRobot());
   }
 
   /** Shows the values of the session's robot. */
-  showRobot(): void {
-    const { floor, description } = this.session();
+  private showRobot(): void {
+    const { floor, description } = this.session;
     this.driveList.value = floor.kind;
     for (const name of SLIDER_NAMES) {
       const input = this.sliderOf(name);
@@ -70,7 +66,7 @@ export class World {
     this.enableSliders(floor);
     this.servoList.replaceChildren(...description.models.map((model) => new Option(describeServo(model), model.name)));
     this.showServos();
-    this.supplyInput.value = String(this.session().volts);
+    this.supplyInput.value = String(this.session.volts);
     this.showText(this.supplyInput, this.supplyInput.valueAsNumber.toFixed(2));
     const [slowVolts, stopVolts, restVolts] = description.supply;
     this.showInputs();
@@ -79,15 +75,14 @@ export class World {
   }
 
   private chooseServos(servos: string): void {
-    this.session().setServos(servos);
+    this.session.setServos(servos);
     this.showServos();
-    this.enableSliders(this.session().floor);
-    this.onChange();
+    this.enableSliders(this.session.floor);
   }
 
   /** Shows the servo model and its supply voltage, which is the model's own unless the user has set another. */
   private showServos(): void {
-    const { description, servos } = this.session();
+    const { description, servos } = this.session;
     const [name = '', supply] = servos.split(' at ');
     this.servoList.value = name;
     const figures = description.models.find((model) => model.name === name)?.figures;
@@ -100,10 +95,10 @@ export class World {
 
   /** Shows a checkbox for each input of the robot: its simulated contact is closed while the box is ticked. */
   private showInputs(): void {
-    const { description, closedInputs: closed } = this.session();
+    const { description, closedInputs: closed } = this.session;
     const boxes = description.inputs.map(([name]) => {
       const box = make('input', { type: 'checkbox', checked: closed.has(name) });
-      box.addEventListener('change', () => this.session().setContact(name, box.checked));
+      box.addEventListener('change', () => this.session.setContact(name, box.checked));
       return make('label', {}, box, ` ${CONTACT_LABELS[name] ?? name}`);
     });
     element('inputs').replaceChildren(...boxes);
@@ -117,7 +112,7 @@ export class World {
   /** Enables the sliders that have an effect, and disables the others. */
   private enableSliders(floor: Floor): void {
     const hasSprings = floor.kind !== 'rigid';
-    const isElastic = hasSprings || this.session().servos !== 'ideal';
+    const isElastic = hasSprings || this.session.servos !== 'ideal';
     this.sliderOf('force').disabled = !hasSprings;
     // If neither springs nor servos yield, friction has no effect, and neither has mass if no foot is too long.
     this.sliderOf('friction').disabled = !isElastic;
@@ -134,7 +129,7 @@ export class World {
   /** Sets the sliders' values in the session. */
   private applyFloor(): void {
     // A slider that was not moved keeps its exact value.
-    const currentFloor = this.session().floor;
+    const currentFloor = this.session.floor;
     const sliderValue = (name: SliderName) => {
       const input = this.sliderOf(name);
       return SLIDER_FORMATS[name](currentFloor[name]) === SLIDER_FORMATS[name](input.valueAsNumber) ? currentFloor[name] : input.valueAsNumber;
@@ -151,8 +146,7 @@ export class World {
       twist: sliderValue('twist'),
     };
     this.enableSliders(floor);
-    this.session().setFloor(floor);
-    this.onChange();
+    this.session.setFloor(floor);
   }
 }
 

@@ -1,6 +1,9 @@
 // Writes firmware or robot to a board, and shows the progress and the result in the caller's elements.
+import { signal } from '@preact/signals-core';
+
 import type { Progress, Session } from '../session';
 import { messageOf } from '../trouble';
+import { setText } from './canvas';
 
 /** The elements that show the progress and the result. */
 export interface Display {
@@ -23,29 +26,20 @@ const PROGRESS_STEPS = {
 } as const;
 
 export class Writer {
-  private isWriting = false;
-
-  /** `onBusyChange` is called with true when the boot loader takes the link, and with false when it is free again. */
-  constructor(
-    private readonly session: () => Session,
-    private readonly onBusyChange: (isBusy: boolean) => void,
-  ) {}
-
   /** True while the boot loader uses the link. */
-  get isBusy(): boolean {
-    return this.isWriting;
-  }
+  readonly isBusy = signal(false);
+
+  constructor(private readonly session: Session) {}
 
   /** Writes and verifies, then waits for the board's banner; returns true if all of this succeeded. */
   async write(content: WriteContent, { progress, message }: Display): Promise<boolean> {
-    if (this.isWriting) return false;
-    const session = this.session();
+    if (this.isBusy.value) return false;
+    const session = this.session;
     const { isReal } = session;
     const { name } = session.link;
     const start = performance.now();
     const hash = typeof content === 'string' ? session.description.hash : null;
-    this.isWriting = true;
-    this.onBusyChange(true);
+    this.isBusy.value = true;
     progress.hidden = false;
     progress.value = 0;
     message.textContent = 'calling the boot loader…';
@@ -54,7 +48,7 @@ export class Writer {
       const [text, from, to] = PROGRESS_STEPS[step];
       // The bar never goes back, although the first page of the program is written after all others were verified.
       progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);
-      if (message.textContent !== text) message.textContent = text;
+      setText(message, text);
     };
     try {
       await (content === 'robot' ? session.flash(session.robotSection, true, showProgress) : session.flash(content === 'all' ? session.image : content, false, showProgress));
@@ -66,8 +60,7 @@ export class Writer {
       message.textContent = `not written: ${messageOf(error)}`;
     }
     progress.hidden = true;
-    this.isWriting = false;
-    this.onBusyChange(false);
+    this.isBusy.value = false;
     if (!isWritten) return false;
     const problem = await session.checkWrittenBoard(hash);
     if (problem === null) return true;
