@@ -17,7 +17,7 @@ pub fn is_closed(number: u8) -> bool {
     let port_register = usize::from(pin.port()) as *const u8;
     let pin_register = usize::from(pin.port() - PIN_BELOW_PORT) as *mut u8;
     // SAFETY: both are registers of the chip. Nothing else drives this pin
-    // ([`lizard_core::control::Control::awaited_input`]), and no other bit of the port changes.
+    // ([`lizard_core::control::Controller::awaited_input`]), and no other bit of the port changes.
     unsafe {
         if port_register.read_volatile() & pin.mask() == 0 {
             pin_register.write_volatile(pin.mask());

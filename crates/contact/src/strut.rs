@@ -1,4 +1,4 @@
-//! A strut with a slot and a tension spring in it, which connects a servo's arm to its leg's arm.
+//! A slotted strut with a tension spring, which connects a servo's arm to its leg's arm.
 //!
 //! The two arms are equal and parallel. With the strut and the line from the servo's shaft to the
 //! leg's pivot they form a parallelogram. The leg's screw runs in a slot of the strut, and a spring
@@ -15,7 +15,7 @@ use crate::legs::FORWARD_TURN_SIGN;
 /// Distance that the leg's screw can slide in the slot of its strut, mm.
 pub const SLOT_LENGTH: f64 = 5.0;
 
-/// A slotted strut and its spring; all four struts are equal.
+/// A slotted strut and its spring; all four struts are identical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strut {
     /// Pull of the spring while the leg does not lag, N.

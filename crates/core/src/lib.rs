@@ -8,12 +8,12 @@
 //! of the second row:
 //!
 //! ```text
-//!         Console                     Control                                Board
+//!         Console                     Controller                             Board
 //! bytes -> Line -> Command -> Order -> Motion (Gait, PointToPointMove) -> guard -> Pulses -> timer
 //! lines <- print <- Answer <- Refusal <- Safety (supervisor's table) <- Health
 //! ```
 //!
-//! [`step::Main`] joins a [`console::Console`] and a [`control::Control`]: it is the loop
+//! [`step::Main`] joins a [`console::Console`] and a [`control::Controller`]: it is the loop
 //! that a board repeats. Below it are six modules, each of which uses only those below
 //! it in this table:
 //!

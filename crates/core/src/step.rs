@@ -14,7 +14,7 @@ use lizard_avr::Region;
 use crate::console::answer::Counters;
 use crate::console::output::Output;
 use crate::console::{Console, MAX_OUTPUT_LINE_BYTES};
-use crate::control::Control;
+use crate::control::Controller;
 use crate::control::safety::Health;
 use crate::control::supply::Reading;
 use crate::memory::record::Memory;
@@ -98,7 +98,7 @@ pub trait Board {
 /// The main loop: the robot's control, and its console on the serial line.
 #[derive(Clone, Debug)]
 pub struct Main {
-    control: Control,
+    control: Controller,
     console: Console,
     /// The tick for which the main loop last computed or skipped a frame.
     last_tick: u8,
@@ -126,7 +126,7 @@ impl Main {
     /// initial values.
     pub const fn new() -> Self {
         Self {
-            control: Control::new(),
+            control: Controller::new(),
             console: Console::new(),
             last_tick: 0,
         }
@@ -150,7 +150,7 @@ impl Main {
     }
 
     /// The robot's control.
-    pub const fn control(&self) -> &Control {
+    pub const fn control(&self) -> &Controller {
         &self.control
     }
 

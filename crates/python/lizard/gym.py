@@ -1,6 +1,6 @@
-"""The robot as an environment of Gymnasium, on the physics engine MuJoCo: `gymnasium.make("lizard.gym:Lizard-v0")`.
+"""The robot as a Gymnasium environment, simulated with MuJoCo: `gymnasium.make("lizard.gym:Lizard-v0")`.
 
-An import of this module registers `Lizard-v0`, of 250 frames.
+Importing this module registers `Lizard-v0`, whose episodes last 250 frames.
 """
 
 from __future__ import annotations
@@ -18,26 +18,26 @@ from lizard.model import Array, Model
 
 REACH = 30.0
 """Sweep of a servo from neutral that the actions -1 and 1 ask for, deg."""
-STEP = 0.001
-"""Step of the engine, s: the coarsest with which a cycle of each gait is as long as with 0.2 ms, within 2 %."""
-SETTLING = 0.5
-"""Seconds in which the robot comes to rest on the floor before the first frame."""
+TIMESTEP = 0.001
+"""Time step of the engine, s: the coarsest with which a cycle moves the robot as far as with 0.2 ms, within 2 %."""
+SETTLING_TIME = 0.5
+"""Time for the robot to settle on the floor before the first frame, s."""
 
 
 class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
-    """The robot on a level floor; a step is a frame of 20 ms.
+    """The robot on a level floor; each call of `step` advances one frame of 20 ms.
 
     Action, (4,), -1 to 1: the targets of A1 to A4 as sweeps from neutral, counter-clockwise positive, in units of
     30 deg. As on the board, a target is approached at most as fast as `[limits] gait_slew`, and a pose that breaks a
-    limit is not taken: the last safe one is held.
+    limit is refused: the last safe one is held.
 
     Observation, (15,): the servos' sweeps (rad) and rates (rad/s), the body's velocity forward and to the left (m/s)
     and its turn (rad/s), and the targets (rad).
 
-    Reward: mm forward, as seen from the start. `info` has the place: `forward` and `left` (mm), `turn` (deg), and
-    `held`, true if the action was not taken.
+    Reward: the distance moved in this frame along the axis that points forward at the start, mm. `info` has the
+    displacement from the start, `forward` and `left` (mm) and `turn` (deg), and `held`, true if the action was refused.
 
-    A seed decides the friction of the floor, which differs from robot.toml's by up to `friction_spread`.
+    A seed determines the friction of the floor, which differs from robot.toml's by up to `friction_spread`.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012
@@ -46,27 +46,27 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self,
         model: Model | None = None,
         friction_spread: float = 0.1,
-        step: float = STEP,
+        timestep: float = TIMESTEP,
     ) -> None:
         self.robot = model or Model.default()
         self.engine = mujoco.MjModel.from_xml_string(self.robot.mjcf(shapes=False))
         if self.engine.numeric("back over forward").data[0] != 1:
-            raise ValueError("[ground] ratio is not 1: MuJoCo has no pads with a grain")
-        _coarsen(self.engine, step)
+            raise ValueError("[ground] ratio is not 1: MuJoCo cannot simulate pads with a grain (directional friction)")
+        _set_timestep(self.engine, timestep)
         self.data = mujoco.MjData(self.engine)
         self.friction_spread = friction_spread
-        self._substeps = round(FRAME / step)
+        self._substeps = round(FRAME / timestep)
         self._friction = self.engine.geom_friction.copy()
         joints = [
             self.engine.actuator(name).trnid[0] for name in ("A1", "A2", "A3", "A4")
         ]
-        self._angles = self.engine.jnt_qposadr[joints]
-        self._rates = self.engine.jnt_dofadr[joints]
-        self._most = math.radians(self.robot.gait_slew) * FRAME
+        self._qpos_indices = self.engine.jnt_qposadr[joints]
+        self._qvel_indices = self.engine.jnt_dofadr[joints]
+        self._max_change = math.radians(self.robot.gait_slew) * FRAME
         self._target: Array = np.zeros(4)
-        self._place = (0.0, 0.0, 0.0)
-        mujoco.mj_step(self.engine, self.data, round(SETTLING / step))
-        self._rest = self.data.qpos.copy()
+        self._start_pose = (0.0, 0.0, 0.0)
+        mujoco.mj_step(self.engine, self.data, round(SETTLING_TIME / timestep))
+        self._settled_qpos = self.data.qpos.copy()
         self.action_space = gymnasium.spaces.Box(-1, 1, (4,), np.float32)
         self.observation_space = gymnasium.spaces.Box(
             -np.inf, np.inf, (15,), np.float32
@@ -77,54 +77,54 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         super().reset(seed=seed)
         mujoco.mj_resetData(self.engine, self.data)
-        self.data.qpos[:] = self._rest
+        self.data.qpos[:] = self._settled_qpos
         spread = self.friction_spread
         self.engine.geom_friction[:, 0] = self._friction[:, 0] * self.np_random.uniform(
             1 - spread, 1 + spread
         )
         mujoco.mj_forward(self.engine, self.data)
         self._target = np.zeros(4)
-        self._place = self._now()
+        self._start_pose = self._chassis_pose()
         return self._observation(), self._info(False)
 
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        wanted = np.clip(action, -1, 1) * math.radians(REACH)
-        target = self._target + np.clip(wanted - self._target, -self._most, self._most)
+        wanted_sweeps = np.clip(action, -1, 1) * math.radians(REACH)
+        target = self._target + np.clip(wanted_sweeps - self._target, -self._max_change, self._max_change)
         held = not self.robot.solve(self.robot.neutral + np.degrees(target)).safe
         if not held:
             self._target = target
         self.data.ctrl[:] = self._target
-        before = self._forward()
+        before = self._forward_mm()
         mujoco.mj_step(self.engine, self.data, self._substeps)
-        broken = not np.isfinite(self.data.qpos).all()
-        reward = 0.0 if broken else self._forward() - before
-        return self._observation(), reward, broken, False, self._info(held)
+        has_diverged = not np.isfinite(self.data.qpos).all()
+        reward = 0.0 if has_diverged else self._forward_mm() - before
+        return self._observation(), reward, has_diverged, False, self._info(held)
 
-    def _now(self) -> tuple[float, float, float]:
-        """Place of the chassis: to the right and forward, mm, and heading, rad."""
+    def _chassis_pose(self) -> tuple[float, float, float]:
+        """Position of the chassis, to the right and forward (mm), and its heading (rad)."""
         x, y, _, w, qx, qy, qz = self.data.qpos[:7]
         heading = math.atan2(2 * (w * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
         return 1000 * x, 1000 * y, heading
 
-    def _forward(self) -> float:
+    def _forward_mm(self) -> float:
         return 1000 * float(self.data.qpos[1])
 
     def _observation(self) -> NDArray[np.float32]:
-        heading = self._now()[2]
+        heading = self._chassis_pose()[2]
         vx, vy = self.data.qvel[:2]
         cos, sin = math.cos(heading), math.sin(heading)
         body = [vy * cos - vx * sin, -vx * cos - vy * sin, self.data.qvel[5]]
-        servos = [self.data.qpos[self._angles], self.data.qvel[self._rates]]
+        servos = [self.data.qpos[self._qpos_indices], self.data.qvel[self._qvel_indices]]
         return np.concatenate(
             [*servos, body, self._target], dtype=np.float32, casting="same_kind"
         )
 
     def _info(self, held: bool) -> dict[str, Any]:
-        x, y, heading = self._now()
-        turn = math.remainder(heading - self._place[2], math.tau)
-        forward, left = y - self._place[1], self._place[0] - x
+        x, y, heading = self._chassis_pose()
+        turn = math.remainder(heading - self._start_pose[2], math.tau)
+        forward, left = y - self._start_pose[1], self._start_pose[0] - x
         return {
             "forward": forward,
             "left": left,
@@ -133,13 +133,13 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         }
 
 
-def _coarsen(engine: mujoco.MjModel, step: float) -> None:
-    """Sets the engine's step, for which constraints must be softer, and the faster of two equal solvers."""
-    engine.opt.timestep = step
+def _set_timestep(engine: mujoco.MjModel, timestep: float) -> None:
+    """Sets the engine's time step, softens the constraints to suit it, and selects faster settings of the solver."""
+    engine.opt.timestep = timestep
     engine.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
     engine.opt.tolerance, engine.opt.noslip_iterations = 1e-6, 0
-    for stiff in (engine.eq_solref, engine.geom_solref, engine.jnt_solref):
-        stiff[:, 0] = np.maximum(stiff[:, 0], 2 * step)
+    for solref in (engine.eq_solref, engine.geom_solref, engine.jnt_solref):
+        solref[:, 0] = np.maximum(solref[:, 0], 2 * timestep)
 
 
 gymnasium.register(

@@ -87,7 +87,7 @@ class Driver:
         return chosen
 
     def drive(self, forward: float, turn: float) -> None:
-        """Takes a velocity in m/s and rad/s; `watch_over` has to follow several times a second.
+        """Takes a velocity in m/s and rad/s; `stop_if_silent` has to follow several times a second.
 
         Raises RobotError if the robot refuses, or has stopped by itself; the next velocity starts it again.
         """
@@ -108,7 +108,7 @@ class Driver:
             self._robot.go(gait)
         self._going = wanted
 
-    def watch_over(self) -> None:
+    def stop_if_silent(self) -> None:
         """Stops the robot if no velocity has come for `TIMEOUT`."""
         if self._going and time.monotonic() - self._heard > TIMEOUT:
             self.stop()

@@ -1,4 +1,4 @@
-//! A checked robot.toml and computations with it, for many poses at a time.
+//! A checked robot.toml, and computations on it for many poses at once.
 
 use lizard_host::flash::file;
 use lizard_kinematics::{Check, End, Solution, Vector};
@@ -16,7 +16,7 @@ pyo3::create_exception!(
     "A mistake in a robot.toml, with its `file`, `line` (None if it belongs to none) and `key`."
 );
 
-/// Number of columns of [`Robot::solve`]: head point, tail point, coupler angles, slider directions, slider travels,
+/// Number of columns in the result of [`Robot::solve`]: head point, tail point, coupler angles, slider directions, slider travels,
 /// margins, and 1 if the pose is safe.
 const COLUMN_COUNT: usize = 2 + 2 + 4 + 2 + 2 + 10 + 1;
 
@@ -35,7 +35,7 @@ impl Robot {
         wrap_robot(py, py.detach(|| lizard_robot::Robot::parse(text)))
     }
 
-    /// Reads and checks a file.
+    /// Reads and checks a robot.toml file.
     #[staticmethod]
     fn load(py: Python<'_>, path: &str) -> PyResult<Self> {
         wrap_robot(py, py.detach(|| lizard_robot::Robot::load(path)))
@@ -56,7 +56,7 @@ impl Robot {
         self.0.neutral_pose().into()
     }
 
-    /// The smallest and largest travel of each servo from neutral, deg.
+    /// The limits of each servo's travel from neutral, deg.
     fn travel(&self) -> [(f64, f64); 4] {
         self.0.servos().map(|servo| servo.travel())
     }
@@ -137,7 +137,7 @@ impl Robot {
     /// the times (s) and servo angles (deg) of the frames of a cycle.
     #[expect(
         clippy::type_complexity,
-        reason = "a tuple that Python takes apart at once"
+        reason = "a tuple that Python unpacks at once"
     )]
     fn gait<'py>(
         &self,
@@ -200,7 +200,7 @@ impl Robot {
         Ok([forward, left, turn].map(|component| component.unwrap_or(f64::NAN)))
     }
 
-    /// The robot's section of flash.
+    /// The bytes of the robot's section of flash.
     fn section<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &py.detach(|| self.0.section()))
     }

@@ -78,7 +78,7 @@ fn the_processor_is_awake_for_less_than_a_tenth_of_the_time_in_every_gait() {
 fn every_tick_computes_one_frame() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_for_frames(0);
-    let calls = bench.time_calls("Control::compute_frame", 2000);
+    let calls = bench.time_calls("Controller::compute_frame", 2000);
     assert_eq!(calls.len() as u64, 2 * FRAMES_PER_SECOND);
     for pair in calls.windows(2) {
         // The time from each tick to the next is constant, except for an instruction in progress and for

@@ -20,7 +20,7 @@ fn function_paths_with(parts: &[&str]) -> Vec<String> {
     assert!(
         paths
             .iter()
-            .any(|path| path.ends_with("Control::compute_frame")),
+            .any(|path| path.ends_with("Controller::compute_frame")),
         "the ELF has no symbols"
     );
     paths

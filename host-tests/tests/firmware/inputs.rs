@@ -251,7 +251,7 @@ fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
 fn a_frame_of_a_patrol_takes_no_more_than_five_thousand_cycles_on_average() {
     for start_patrol in [start_waiting_patrol, start_walking_patrol] {
         let mut bench = start_patrol(Fidelity::DataSheet);
-        let calls = bench.time_calls("Control::compute_frame", 4_000);
+        let calls = bench.time_calls("Controller::compute_frame", 4_000);
         let cycles = calls.iter().map(|call| call.leave_cycle - call.enter_cycle);
         let mean_cycles = cycles.sum::<u64>() / calls.len() as u64;
         println!("{mean_cycles} cycles a frame");

@@ -17,9 +17,9 @@ use crate::{
 /// two changes of the LED, so the LED is lit in a second sweep where it was dark in the first.
 const MAX_HAND_OVER_CYCLES: u64 = 608;
 
-/// Runs until `Control::compute_frame` returns to the main loop with the next frame.
+/// Runs until `Controller::compute_frame` returns to the main loop with the next frame.
 fn run_to_hand_over(bench: &mut FirmwareBench) {
-    let frame_function = bench.uno.image().function("Control::compute_frame");
+    let frame_function = bench.uno.image().function("Controller::compute_frame");
     let entry_address = frame_function.expect("the ELF has the function").address as u32;
     let uno = &mut bench.uno;
     assert!(uno.run_until(FRAME_CYCLES, 1, |uno| uno.pc() == entry_address));

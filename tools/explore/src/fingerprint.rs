@@ -68,7 +68,7 @@ const RULES: &[FieldRule] = &[
         Coarse(|share| share >> 13),
     ),
     ("Restart", "reset_count", Coarse(|count| count.min(1))),
-    ("Control", "reset_count", Coarse(|count| count.min(1))),
+    ("Controller", "reset_count", Coarse(|count| count.min(1))),
 ];
 
 /// The fields that record the arrival of a line. A refused command may change only these fields.
@@ -83,9 +83,9 @@ const LINE_ARRIVAL_FIELDS: &[FieldRule] = &[
     ("Safety", "silence_ms", Skip),
     ("Safety", "boot_timer", Skip),
     // A command shows that the last reset came from a program that opened the port.
-    ("Control", "has_heard_command", Skip),
+    ("Controller", "has_heard_command", Skip),
     // After a command, the motion that `boot` began counts as ordered.
-    ("Control", "is_unattended", Skip),
+    ("Controller", "is_unattended", Skip),
 ];
 
 fn countdown_class(frames: u64) -> u64 {

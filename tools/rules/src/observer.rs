@@ -16,7 +16,7 @@ pub struct Limits {
     pub max_leap_cycles: [u32; 4],
     /// The shortest and the longest pulse of each servo, cycles.
     pub width_ranges: [(u32, u32); 4],
-    /// The voltages below which the supply forbids EEPROM writes, motions and pulses, mV.
+    /// The supply voltages below which EEPROM writes, motions and pulses are forbidden, mV.
     pub levels_mv: [u32; 3],
     /// The largest error of the robot's own measurement of the supply, mV: a step of the converter, and the rounding to
     /// two decimals.
@@ -40,7 +40,7 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// The limits of a robot that is observed exactly, between its frames.
+    /// Returns the limits for a robot that is observed exactly, between its frames.
     fn default() -> Self {
         Self {
             max_leap_cycles: [u32::MAX; 4],
@@ -111,7 +111,7 @@ pub struct Observer {
     pub(crate) brown_out_times: [Time; 5],
 }
 
-/// Promises of the robot's answers that are not due yet.
+/// Promises in the robot's answers that are not due yet.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PendingPromises {
     /// Start and end of the time in which every servo must get a pulse; true for each servo that has got a pulse.
@@ -262,7 +262,7 @@ impl Observer {
             || self.supply.time_below(rest_mv, since - 400 * MS, self.now) > 0
     }
 
-    /// Judges an event.
+    /// Records an event and judges it by the rules.
     pub fn observe(&mut self, time: Time, event: Event<'_>) {
         self.advance(time);
         match event {
@@ -350,7 +350,7 @@ impl Observer {
 
     fn note_program_start(&mut self, cause: Cause) {
         let now = self.now;
-        // A brown-out may last long: the program hung if a disturbance came shortly before the brown-out began.
+        // A brown-out may last a long time: the program hung if a disturbance came shortly before the brown-out began.
         let ran_until = if cause == Cause::BrownOut {
             self.cut_at.max(self.started_at)
         } else {

@@ -14,7 +14,7 @@ use crate::console::print;
 use crate::console::refusal;
 use crate::console::text::Text;
 use crate::console::watch::Watch;
-use crate::control::Control;
+use crate::control::Controller;
 use crate::control::order::Acceptance;
 use crate::control::refusal::Refusal;
 use crate::control::safety::Notice;
@@ -80,7 +80,7 @@ impl Console {
 
     /// Advances the timer of `watch` and the time since the last byte by a frame. Returns the new
     /// baud rate of the serial line; `None` if it stays the same.
-    pub fn advance_frame(&mut self, control: &Control) -> Option<BaudRate> {
+    pub fn advance_frame(&mut self, control: &Controller) -> Option<BaudRate> {
         self.watch.count_frame();
         self.silence_ms = self.silence_ms.saturating_add(FRAME_MS);
         let deadman_ms = control.deadman_ms();
@@ -99,14 +99,14 @@ impl Console {
 
     /// True while a line waits to be written. Meanwhile the caller passes no byte on, since the answer may
     /// quote the received line.
-    pub const fn has_output(&self, control: &Control) -> bool {
+    pub const fn has_output(&self, control: &Controller) -> bool {
         self.next_pending_line(control).is_some()
     }
 
     /// Takes a byte from the serial line; if the byte ends a line of text, executes that line.
     // Not inlined, like the next function: that saves half a kilobyte of flash.
     #[inline(never)]
-    pub fn receive(&mut self, byte: u8, control: &mut Control) {
+    pub fn receive(&mut self, byte: u8, control: &mut Controller) {
         control.note_byte();
         self.silence_ms = 0;
         self.rate_finder.note_byte(byte);
@@ -124,7 +124,7 @@ impl Console {
     /// Executes the received line. Returns `Ok(None)` if the order has to wait for the EEPROM; the caller then reports
     /// its outcome with [`Console::finish_order`].
     #[inline(never)]
-    fn execute_line(&mut self, control: &mut Control) -> Result<Option<Answer>, Answer> {
+    fn execute_line(&mut self, control: &mut Controller) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
         let text = self.line.text();
         let mut command = command::parse(text, robot);
@@ -169,7 +169,12 @@ impl Console {
     /// answer or a part of it; a notice; the reason why the guard holds the robot; or the pose report of
     /// `watch`. The longest line, `status`, is written in parts, one per call.
     #[inline(never)]
-    pub fn write_line(&mut self, control: &mut Control, out: &mut impl Output, counters: Counters) {
+    pub fn write_line(
+        &mut self,
+        control: &mut Controller,
+        out: &mut impl Output,
+        counters: Counters,
+    ) {
         match self.next_pending_line(control) {
             None => return,
             Some(PendingLine::Banner) => {
@@ -204,7 +209,7 @@ impl Console {
     }
 
     /// The line to be written next, by priority; `None` if nothing waits.
-    const fn next_pending_line(&self, control: &Control) -> Option<PendingLine> {
+    const fn next_pending_line(&self, control: &Controller) -> Option<PendingLine> {
         if !self.has_printed_banner {
             Some(PendingLine::Banner)
         } else if let Some(answer) = self.answer {

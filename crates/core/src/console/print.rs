@@ -6,7 +6,7 @@ use crate::console::line::Line;
 use crate::console::output::Output;
 use crate::console::text::Text;
 use crate::console::word::{RESERVED_COUNT, Word};
-use crate::control::Control;
+use crate::control::Controller;
 use crate::control::fault::Fault;
 use crate::control::safety::Notice;
 use crate::control::supply::{Level, Voltage};
@@ -38,7 +38,7 @@ pub(super) fn print_answer(
     out: &mut impl Output,
     answer: Answer,
     line: &Line,
-    control: &Control,
+    control: &Controller,
     counters: Counters,
 ) -> Option<Answer> {
     match answer {
@@ -113,7 +113,7 @@ fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Opti
 
 /// Prints `ok gait=walk phase=0.250 pose=138.59,41.41,318.59,221.41`.
 #[inline(never)]
-fn print_status(out: &mut impl Output, control: &Control) {
+fn print_status(out: &mut impl Output, control: &Controller) {
     let motion = control.motion();
     let robot = motion.robot();
     Text::OkGait.print(out);
@@ -154,7 +154,7 @@ fn print_margin(out: &mut impl Output, motion: &Motion) {
 /// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
 /// without voltages before the first reading, and without `rail` if the rail is not measured.
 #[inline(never)]
-fn print_health(out: &mut impl Output, control: &Control, counters: Counters) {
+fn print_health(out: &mut impl Output, control: &Controller, counters: Counters) {
     digits::print_count(out, Text::StatusLate, counters.late_edges.into());
     digits::print_count(out, Text::StatusRxLost, counters.rx_lost.into());
     Text::StatusGuard.print(out);
@@ -188,7 +188,7 @@ fn print_health(out: &mut impl Output, control: &Control, counters: Counters) {
 
 /// Prints the line of `cal` with this index; returns false after the last one, which is `ok cal`.
 #[inline(never)]
-fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Control) -> bool {
+fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Controller) -> bool {
     let settings = control.settings();
     match line_index {
         CAL_BOOT_LINE => {
@@ -231,7 +231,7 @@ fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Control)
 }
 
 /// Prints the value of the setting `boot`.
-fn print_boot(out: &mut impl Output, control: &Control) {
+fn print_boot(out: &mut impl Output, control: &Controller) {
     let robot = control.motion().robot();
     match control.settings().boot(robot) {
         Boot::Rest => Text::Rest.print(out),
@@ -240,7 +240,7 @@ fn print_boot(out: &mut impl Output, control: &Control) {
 }
 
 /// Prints a notice, which is a line that no command has asked for.
-pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Control) {
+pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Controller) {
     match notice {
         Notice::SavedSettings => match control.saved_state() {
             SavedState::Latest | SavedState::Blank => Text::MemoryBlank,

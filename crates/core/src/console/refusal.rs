@@ -77,7 +77,7 @@ impl Refusal {
     }
 }
 
-/// Prints an error code and a blank.
+/// Prints an error code and a space.
 fn print_code(code: u8, out: &mut impl Output) {
     print_number(out, code.into(), 0);
     out.write_byte(b' ')
@@ -102,7 +102,7 @@ fn print_range(servo: Servo, range: &NeededTravel, motion: &Motion, out: &mut im
     print_hundredths(out, Text::Dots, neutral.swept(range.max).centideg())
 }
 
-/// Prints the hazard of a pose: the travel, margin or stroke that is violated, with its limits.
+/// Prints the hazard of a pose: the violated travel, margin or stroke, with its limits.
 #[inline(never)]
 pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
     let robot = motion.robot();

@@ -37,12 +37,12 @@ mod routine;
 /// Frames without a reset after which the supply counts as good again: 30 s.
 const GOOD_SUPPLY_FRAMES: u32 = 1500;
 
-/// Frames after a start of the program within which all servos wake: 0.6 s.
+/// Frames after the program starts within which all servos wake: 0.6 s.
 const WAKING_FRAMES: u32 = 30;
 
-/// The control of the robot: its motion, settings, safety, and the EEPROM operation in progress.
+/// The controller of the robot: its motion, settings, safety, and the EEPROM operation in progress.
 #[derive(Clone, Debug)]
-pub struct Control {
+pub struct Controller {
     motion: Motion,
     settings: Settings,
     /// The reason why the flash holds no usable robot.
@@ -62,7 +62,7 @@ pub struct Control {
     /// True if a command has come since the program started.
     has_heard_command: bool,
     routine: Routine,
-    /// The contact that may end the latest step of a routine.
+    /// The contact that may end the current step of a routine.
     contact: Contact,
     /// True if `boot` started the current activity, and no command has come since.
     is_unattended: bool,
@@ -74,14 +74,14 @@ pub struct Control {
     hold_reason: Option<Hazard>,
 }
 
-impl Default for Control {
+impl Default for Controller {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Control {
-    /// A control without a robot; [`Control::begin`] must follow.
+impl Controller {
+    /// Returns a controller without a robot; [`Controller::begin`] must follow.
     pub const fn new() -> Self {
         Self {
             settings: Settings::NONE,
@@ -323,7 +323,7 @@ impl Control {
                     GaitId::STAND => Event::Stand,
                     _ => Event::Move,
                 })?;
-                self.note_motion();
+                self.prepare_for_motion();
                 self.start_gait(*gait, *cycles);
             }
             Order::Pose(angles) => {
@@ -367,7 +367,7 @@ impl Control {
         Ok(Acceptance::Done)
     }
 
-    /// Looks up an event in the supervisor's table. Returns true if the order is to be obeyed, false if there is
+    /// Looks up an event in the supervisor's table. Returns true if the order must be carried out, false if there is
     /// nothing to do.
     ///
     /// # Errors
@@ -391,7 +391,7 @@ impl Control {
         }
         self.check_allowed(Event::Move)?;
         self.motion.go_to(pose).map_err(Refusal::Unsafe)?;
-        self.note_motion();
+        self.prepare_for_motion();
         Ok(())
     }
 
@@ -402,9 +402,9 @@ impl Control {
         self.motion.stop();
     }
 
-    /// Notes that an order begins a motion: ends the routine, clears the fault, and invalidates
+    /// Prepares for a motion that an order begins: ends the routine, clears the fault, and invalidates
     /// the saved rest pose.
-    fn note_motion(&mut self) {
+    fn prepare_for_motion(&mut self) {
         self.routine = Routine::NONE;
         self.safety.clear_fault();
         self.brown_outs = 0;

@@ -14,4 +14,4 @@ pub mod safety;
 pub mod supervisor;
 pub mod supply;
 
-pub use controller::Control;
+pub use controller::Controller;

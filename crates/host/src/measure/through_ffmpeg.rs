@@ -1,8 +1,8 @@
-//! The reading of a film file's pictures through the programs ffmpeg and ffprobe.
+//! Reads the frames of a video file with the programs ffmpeg and ffprobe.
 //!
-//! A film decoder is too large to be part of this program, and ffmpeg is available everywhere. ffprobe gives the time
-//! of each picture, because the pictures of a phone are not evenly spaced in time. ffmpeg sends the pictures as
-//! YUV4MPEG2: a line with the size, then for each picture a line and its grey pixels.
+//! A video decoder is too large to be part of this program, and ffmpeg is available everywhere. ffprobe gives the time
+//! of each frame, because the frames of a phone's video are not evenly spaced in time. ffmpeg sends the frames as
+//! YUV4MPEG2: a header line with the size, then, for each frame, a header line and its grey pixels.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
@@ -12,98 +12,97 @@ use lizard_film::Picture;
 
 use crate::Failure;
 
-/// Arguments of ffmpeg after the file's name: a grey picture for each picture of the film.
+/// Arguments of ffmpeg after the file's name: output one grey frame for each frame of the video.
 const FFMPEG_ARGUMENTS: &str = "-fps_mode passthrough -f yuv4mpegpipe -pix_fmt gray -strict -1 -";
-/// Arguments of ffprobe before the file's name: the times of the pictures.
+/// Arguments of ffprobe before the file's name: output the times of the frames.
 const FFPROBE_ARGUMENTS: &str =
     "-v error -select_streams v:0 -show_entries frame=best_effort_timestamp_time -of csv=p=0";
-/// Largest width or height of a picture, px.
+/// Largest width or height of a frame, px.
 const MAX_SIZE_PX: usize = 10_000;
 
-/// Calls `handle_picture` for each picture of a film, with its time, s. The times follow from `rate`, pictures per
-/// second, or are those of the film if `rate` is `None`.
+/// Calls `handle_picture` for each frame of a video, with its time, s. The times are computed from `frame_rate`, frames
+/// per second, or read from the video if it is `None`.
 ///
 /// # Errors
-/// Fails if ffmpeg or ffprobe is missing or cannot read the film, or if `handle_picture` fails.
+/// Fails if ffmpeg or ffprobe is missing or cannot read the video, or if `handle_picture` fails.
 pub(super) fn for_each_picture(
-    film: &Path,
-    rate: Option<f64>,
+    video: &Path,
+    frame_rate: Option<f64>,
     mut handle_picture: impl FnMut(f64, &Picture) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    let times = match rate {
+    let times = match frame_rate {
         Some(_) => Vec::new(),
-        None => picture_times(film)?,
+        None => frame_times(video)?,
     };
-    let failure_of = |reason: &str| {
+    let unreadable = |reason: &str| {
         Failure::Input(format!(
-            "{} is no film that ffmpeg can read: {reason}",
-            film.display()
+            "ffmpeg cannot read {} as a video: {reason}",
+            video.display()
         ))
     };
     let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-nostdin", "-i"])
-        .arg(film)
+        .arg(video)
         .args(FFMPEG_ARGUMENTS.split(' '))
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
-        .map_err(|error| start_failure("ffmpeg", &error))?;
+        .map_err(|error| spawn_failure("ffmpeg", &error))?;
     let mut stream = BufReader::new(ffmpeg.stdout.take().expect("standard output is piped"));
     let mut line = String::new();
-    let picture_size = stream
+    let frame_size = stream
         .read_line(&mut line)
         .ok()
         .and_then(|_| parse_size(&line));
-    let outcome = match picture_size {
-        None => Err(failure_of("it sends no pictures")),
+    let outcome = match frame_size {
+        None => Err(unreadable("it has no frames")),
         Some([width, height]) => (0..)
             .try_fold((), |(), i: usize| {
                 line.clear();
                 match stream.read_line(&mut line) {
                     Ok(0) => return Err(None),
                     Ok(_) => {}
-                    Err(error) => return Err(Some(failure_of(&error.to_string()))),
+                    Err(error) => return Err(Some(unreadable(&error.to_string()))),
                 }
-                let mut grey = vec![0; width * height];
-                let read_result = stream.read_exact(&mut grey);
-                read_result.map_err(|_| Some(failure_of("its last picture is not whole")))?;
-                let seconds = match rate {
-                    Some(rate) => Some(i as f64 / rate),
+                let mut pixels = vec![0; width * height];
+                let read_result = stream.read_exact(&mut pixels);
+                read_result.map_err(|_| Some(unreadable("its last frame is incomplete")))?;
+                let seconds = match frame_rate {
+                    Some(frame_rate) => Some(i as f64 / frame_rate),
                     None => times.get(i).copied(),
                 };
-                let seconds = seconds.ok_or_else(|| {
-                    Some(failure_of("it has more pictures than times; give --fps"))
-                })?;
-                let grey = Picture::new(width, height, grey)
-                    .ok_or_else(|| Some(failure_of("no pixels")))?;
-                handle_picture(seconds, &grey).map_err(Some)
+                let seconds = seconds
+                    .ok_or_else(|| Some(unreadable("it has more frames than times; give --fps")))?;
+                let picture = Picture::new(width, height, pixels)
+                    .ok_or_else(|| Some(unreadable("it has no pixels")))?;
+                handle_picture(seconds, &picture).map_err(Some)
             })
             .or_else(|failure: Option<Failure>| failure.map_or(Ok(()), Err)),
     };
-    // ffmpeg may still be sending pictures that are no longer read.
+    // ffmpeg may still be sending frames that are no longer read.
     drop(stream);
     let _ = ffmpeg.kill();
     let _ = ffmpeg.wait();
     outcome
 }
 
-/// Asks ffprobe for the times of a film's pictures, s.
-fn picture_times(film: &Path) -> Result<Vec<f64>, Failure> {
+/// Asks ffprobe for the times of a video's frames, s.
+fn frame_times(video: &Path) -> Result<Vec<f64>, Failure> {
     let output = Command::new("ffprobe")
         .args(FFPROBE_ARGUMENTS.split(' '))
-        .arg(film)
+        .arg(video)
         .output()
-        .map_err(|error| start_failure("ffprobe", &error))?;
+        .map_err(|error| spawn_failure("ffprobe", &error))?;
     let text = String::from_utf8_lossy(&output.stdout);
-    // A picture with side data is followed by a comma and an empty line.
+    // A frame with side data is followed by a comma and an empty line.
     let lines = text.lines().map(|line| line.trim_end_matches(',').trim());
     let lines = lines.filter(|line| !line.is_empty());
     let times: Option<Vec<f64>> = lines.map(|line| line.parse().ok()).collect();
     match times {
         Some(times) if !times.is_empty() => Ok(times),
         _ => Err(Failure::Input(format!(
-            "ffprobe tells no times of the pictures of {}; --fps 30 gives their number in a second",
-            film.display()
+            "ffprobe reports no times for the frames of {}; give the frame rate, for example --fps 30",
+            video.display()
         ))),
     }
 }
@@ -124,10 +123,10 @@ fn parse_size(header: &str) -> Option<[usize; 2]> {
     Some([parse_field('W')?, parse_field('H')?])
 }
 
-fn start_failure(program: &str, error: &std::io::Error) -> Failure {
+fn spawn_failure(program: &str, error: &std::io::Error) -> Failure {
     Failure::Impossible(match error.kind() {
         ErrorKind::NotFound => format!(
-            "a film is read by the program {program}, which is not installed: install ffmpeg, or give a folder of \
+            "reading a video requires the program {program}, which is not installed: install ffmpeg, or give a folder of \
              pictures"
         ),
         _ => format!("cannot run {program}: {error}"),

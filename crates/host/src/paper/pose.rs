@@ -6,7 +6,7 @@ use crate::paper::{inverse, mobility, singularity, solve, velocity};
 use crate::shared::pose_args::Quantity;
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Compute the robot at a pose: its joints, singularities, freedoms or rates
+/// Compute the robot's joints, singularities, degrees of freedom or rates at a pose
 ///
 /// Give the pose by its servo angles, or by the end points of head and tail; or give many
 /// poses as CSV on standard input: with the header theta1,theta4,theta8,theta5 (degrees,
@@ -53,7 +53,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// The subject of the output.
+/// The part of the result to print.
 #[derive(clap::ValueEnum, Clone, Copy, Default)]
 enum Subject {
     /// Every joint, the margins, and whether the pose is safe

@@ -251,7 +251,7 @@ impl SimulatedBoard {
     }
 
     /// Runs the board for `ms` and times every call of a firmware function. The function is given
-    /// by its path, such as `Control::compute_frame`.
+    /// by its path, such as `Controller::compute_frame`.
     ///
     /// # Errors
     /// Fails if the ELF has no such function, or more than one.

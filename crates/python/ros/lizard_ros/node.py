@@ -25,7 +25,7 @@ class Lizard(Node):
         self.driver = Driver(self.robot, self.model)
         self.states = self.create_publisher(JointState, "joint_states", 10)
         self.create_subscription(Twist, "cmd_vel", self.drive, 1)
-        self.create_timer(0.1, self.watch_over)
+        self.create_timer(0.1, self.stop_if_silent)
         threading.Thread(target=self.publish, daemon=True).start()
 
     def publish(self) -> None:
@@ -52,9 +52,9 @@ class Lizard(Node):
         """Takes a velocity."""
         self.attempt(self.driver.drive, twist.linear.x, twist.angular.z)
 
-    def watch_over(self) -> None:
+    def stop_if_silent(self) -> None:
         """Stops the robot when velocities no longer come."""
-        self.attempt(self.driver.watch_over)
+        self.attempt(self.driver.stop_if_silent)
 
     def attempt(self, act, *values) -> None:
         """Does what a robot may refuse, and logs its sentence."""

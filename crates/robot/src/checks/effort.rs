@@ -14,7 +14,7 @@ const STEP_SECONDS: f64 = 0.0025;
 /// Share of the torque-speed line above which a servo has little reserve: play, cold gears or a thin wire may use
 /// it up.
 pub const HIGH_LINE_SHARE: f64 = 0.9;
-/// Factor on a motor's torque and speed with which it follows every gait exactly.
+/// Factor by which a motor's torque and speed are raised so that it follows every gait exactly.
 const STRONG_FACTOR: f64 = 1e6;
 /// Bisection steps of the search for the highest pace.
 const BISECTION_STEPS: usize = 20;
@@ -38,7 +38,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Measures a gait on this ground, with servos that follow it exactly.
+    /// Simulates a gait on this ground, with servos that follow it exactly, and measures their effort.
     #[must_use]
     pub fn of(gait: &CheckedGait, ground: &Ground, motors: &Motors) -> Self {
         let mut servos = motors.per_servo.map(|motor| (motor, Vec::new()));

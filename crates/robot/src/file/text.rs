@@ -1,4 +1,4 @@
-//! The bytes of a robot file, read as text.
+//! Reads a robot file as text.
 
 use std::io::Read;
 use std::path::Path;
@@ -25,6 +25,6 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|fault| {
         let valid_bytes = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
         let line = valid_bytes.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        format!("is not UTF-8 text: line {line} holds other bytes")
+        format!("is not UTF-8 text: line {line} contains other bytes")
     })
 }

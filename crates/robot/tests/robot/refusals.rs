@@ -105,7 +105,7 @@ fn a_file_that_is_not_text_is_refused_without_reading_all_of_it() {
     let latin_path = write_temporary_file("latin", b"# one\n# caf\xe9\n");
     assert_eq!(
         refusal_of(&latin_path),
-        "FILE: is not UTF-8 text: line 2 holds other bytes"
+        "FILE: is not UTF-8 text: line 2 contains other bytes"
     );
     let mut bytes = paper_text().into_bytes();
     bytes.resize(lizard_robot::MAX_FILE_BYTES as usize, b'\n');

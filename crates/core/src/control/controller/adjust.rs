@@ -1,14 +1,14 @@
 //! Changes of the servos' settings. A change takes effect at once. It is refused if some gait, the present pose or the
 //! target would then be outside a servo's travel.
 
-use super::Control;
+use super::Controller;
 use crate::control::order::Setting;
 use crate::control::refusal::Refusal;
 use crate::memory::settings::Settings;
 use crate::numbers::calibration::Calibration;
 use crate::numbers::part::Servo;
 
-impl Control {
+impl Controller {
     /// Changes a setting of a servo, or refuses to and changes nothing.
     #[inline(never)]
     pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {

@@ -4,7 +4,7 @@
 //! has nothing more urgent to do, and takes no input until the operation is complete. With a weak supply a wrong byte
 //! may be written, so nothing is written below a certain voltage, or before the supply has been measured.
 
-use super::Control;
+use super::Controller;
 use crate::control::refusal::Refusal;
 use crate::control::safety::Notice;
 use crate::control::supply::Level;
@@ -26,7 +26,7 @@ pub enum Job {
     WriteCopy(RecordWrite),
 }
 
-impl Control {
+impl Controller {
     /// True while an EEPROM operation is in progress; no order may be given meanwhile. The write of a rest
     /// pose that waits for a better supply does not count, since no order depends on it.
     pub fn is_memory_in_use(&self) -> bool {

@@ -1,6 +1,6 @@
 //! The state of the robot, as a console reports it.
 
-use super::Control;
+use super::Controller;
 use crate::control::fault::Fault;
 use crate::control::safety::Safety;
 use crate::memory::copies::SavedState;
@@ -10,7 +10,7 @@ use crate::motion::Motion;
 use crate::numbers::gaits::Input;
 use crate::numbers::section::SectionError;
 
-impl Control {
+impl Controller {
     /// The robot's motion.
     pub const fn motion(&self) -> &Motion {
         &self.motion

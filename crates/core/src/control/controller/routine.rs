@@ -3,7 +3,7 @@
 //! A step is a gait for some cycles, a gait for some time, a rest, or a wait; a contact may end it earlier.
 //! Every stop and every other motion ends the routine; only an order or `boot` begins one.
 
-use super::Control;
+use super::Controller;
 use crate::control::contact::Contact;
 use crate::control::safety::Notice;
 use crate::numbers::gaits::{GaitId, Input, Step};
@@ -37,7 +37,7 @@ impl Routine {
     }
 }
 
-impl Control {
+impl Controller {
     /// Begins a gait for `count` cycles, 0 for no limit; or a routine for `count` rounds, 0 for the number in
     /// robot.toml.
     #[inline(never)]

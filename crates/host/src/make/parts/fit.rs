@@ -1,4 +1,4 @@
-//! `lizard fit`: proves how close the robot's parts come to each other.
+//! `lizard fit`: proves how close the robot's parts can come to each other.
 
 use std::io::{self, Write};
 
@@ -95,7 +95,7 @@ pub(super) fn prove(assembly: &Assembly) -> Proof {
     complete_proof(&Questions::new(assembly, |_, _| true), None)
 }
 
-/// Makes the proof from the answers of a merge, and computes the missing answers.
+/// Completes the proof: uses the answers from a merge, and computes the missing ones.
 fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
     let bar = progress_bar(questions.count(), BAR_TEMPLATE);
     let known_answer = |index: usize| answers.as_ref()?.get(index).cloned();
@@ -109,7 +109,7 @@ fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof 
 /// Proves that the parts fit and prints the clearances.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, contradictory measures, or parts that come too close.
+/// Fails for an invalid robot.toml, contradictory dimensions, or parts that come too close.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
@@ -148,9 +148,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     verdict.map_err(|clash| BuildProblem::from(clash).into())
 }
 
-fn print_proof(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Result<()> {
+fn print_proof(proof: &Proof, show_all: bool, out: &mut impl Write) -> io::Result<()> {
     /// The largest number of rows in a list without --all.
-    const SHOWN_ROWS: usize = 10;
+    const MAX_ROWS: usize = 10;
     writeln!(
         out,
         "proved   seen   parts                                          at A1 A2 A3 A4, deg"
@@ -161,10 +161,10 @@ fn print_proof(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Resu
             .iter()
             .filter(|pair| pair.proved < FAR_MM * 0.9)
             .collect();
-        let row_count = if shows_all {
+        let row_count = if show_all {
             close_pairs.len()
         } else {
-            SHOWN_ROWS.min(close_pairs.len())
+            MAX_ROWS.min(close_pairs.len())
         };
         for pair in &close_pairs[..row_count] {
             print_row(pair, out)?;
@@ -175,9 +175,9 @@ fn print_proof(proof: &Proof, shows_all: bool, out: &mut impl Write) -> io::Resu
         }
     };
     print_list(&proof.separate_pairs, out)?;
-    writeln!(out, "\nmade to meet: air between them")?;
+    writeln!(out, "\nmade to touch: gap between them")?;
     print_list(&proof.touching_pairs, out)?;
-    writeln!(out, "\nthe guard lets the servos turn at most")?;
+    writeln!(out, "\nranges of the servo angles that the guard accepts")?;
     for (name, [from, to]) in SERVO_NAMES.iter().zip(proof.ranges) {
         writeln!(out, "  {name} {from:7.2} to {to:7.2} deg")?;
     }

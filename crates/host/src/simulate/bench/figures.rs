@@ -81,14 +81,14 @@ pub struct Figures {
 }
 
 /// The function of the firmware that computes a frame: the control tick.
-const TICK_FUNCTION: &str = "Control::compute_frame";
+const TICK_FUNCTION: &str = "Controller::compute_frame";
 /// The guard's function in the ELF.
 const GUARD_FUNCTION: &str = "clearance::find_hazard";
 /// The functions of main's steps other than the control tick.
 const STEP_FUNCTIONS: [&str; 3] = [
     "Console::write_line",
     "Console::receive",
-    "Control::advance_memory",
+    "Controller::advance_memory",
 ];
 /// Lines that take long to execute: those whose answer has several lines, and settings with which the pulse width
 /// limits restrict a servo's travel.
