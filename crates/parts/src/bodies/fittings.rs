@@ -36,9 +36,9 @@ const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
 const WING_FITTING_X: f64 = 29.5;
 /// Distances of the cable ties of a wing from the middle, mm: on the inner and on the outer side of the fittings.
 const WING_TIE_X: [f64; 2] = [28.0, 48.4];
-/// Height of the round socket's middle above the board, and its length beyond the board's edge, mm.
+/// Height of the barrel jack's middle above the board, and its length beyond the board's edge, mm.
 const SOCKET_HEIGHT_AND_OVERHANG: [f64; 2] = [6.5, 2.0];
-/// The round socket's middle, mm to the right of the board's middle.
+/// The barrel jack's middle, mm to the right of the board's middle.
 const SOCKET_X: f64 = 19.05;
 
 fn vector(x: f64, y: f64) -> Vector {
@@ -291,7 +291,7 @@ fn add_on_deck(builder: &mut Builder) {
 }
 
 /// Adds the battery's plug, ahead of the battery or, if a long battery leaves no room there, on top of it. Adds the
-/// plug in the board's round socket.
+/// plug in the board's barrel jack.
 fn add_plugs(builder: &mut Builder) {
     let [_, battery_length, battery_height] = builder.parts.battery;
     let [width, thickness, height] = Fitting::BatteryPlug.facts().size;

@@ -85,7 +85,7 @@ pub enum Fitting {
     Fuse,
     /// The battery's plug and its counterpart.
     BatteryPlug,
-    /// The plug in the board's round socket.
+    /// The plug in the board's barrel jack.
     RoundPlug,
     /// A strap that holds the battery.
     Strap,
@@ -264,11 +264,11 @@ impl Fitting {
                 ],
             },
             Self::RoundPlug => FittingFacts {
-                name: "round plug",
+                name: "barrel plug",
                 grams: 4.0,
                 size: [15.0, 42.0, 15.0],
-                article: "round plug 5.5 x 2.1 mm, plus inside, with two wires of 0.25 mm2 or more, 20 cm long",
-                place: "in the UNO's round socket",
+                article: "barrel plug 5.5 x 2.1 mm, plus inside, with two wires of 0.25 mm2 or more, 20 cm long",
+                place: "in the UNO's barrel jack",
                 fastening: "the socket; its wires in a cable tie at the deck",
                 examples: [
                     Example::from_shops("moulded, with cable", [10.0, 36.0, 10.0]),

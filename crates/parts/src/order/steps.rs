@@ -329,7 +329,7 @@ fn ends_step() -> Step {
     let joints_stage = robot_stage(|body| {
         matches!(body.mount, Mount::Coupler(_)) || has_name_prefix(body, &["tip spacer", "nut tip"])
     });
-    let plug_stage = robot_stage(|body| has_name_prefix(body, &["round plug"]));
+    let plug_stage = robot_stage(|body| has_name_prefix(body, &["barrel plug"]));
     step(
         "Head and tail",
         lift,

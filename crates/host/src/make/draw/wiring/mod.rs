@@ -280,7 +280,7 @@ fn remarks(robot: &Robot) -> Vec<String> {
         "The capacitor's stripe (\u{2212}) goes to ground. The alarm is on the battery's balance plug.".into(),
         "A resistor of 10 k\u{3a9} joins each signal to ground: until the program begins, pins drive".into(),
         "nothing, and a servo might take noise for a pulse.".into(),
-        "The UNO has its power from USB, or from the battery at its round socket.".into(),
+        "The UNO has its power from USB, or from the battery at its barrel jack.".into(),
     ];
     if let (Some(pin), Some(rail)) = (robot.firmware().rail_pin(), robot.supplies().rail) {
         lines.push(format!(

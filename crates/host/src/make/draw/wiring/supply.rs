@@ -1,5 +1,5 @@
 //! The supply, from the battery's cells to the strips: plug, fuse, switch, converter, capacitor, low-voltage alarm, and
-//! the round plug that supplies the board. Positions are in pixels, and grow downwards and to the right.
+//! the barrel plug that supplies the board. Positions are in pixels, and grow downwards and to the right.
 
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 use svg::node::element::Group;
@@ -39,8 +39,8 @@ const CONVERTER_IN_PLUS_Y: f64 = PLUS_Y - SINGLE_WAY_WIRE_OFFSET;
 const CONVERTER_MINUS_Y: f64 = 104.0;
 /// The capacitor's horizontal position.
 const CAPACITOR_X: f64 = 150.0;
-/// Horizontal positions of the two wires that lead down to the round plug.
-const ROUND_PLUG_WIRES_X: [f64; 2] = [20.0, 34.0];
+/// Horizontal positions of the two wires that lead down to the barrel plug.
+const BARREL_PLUG_WIRES_X: [f64; 2] = [20.0, 34.0];
 
 /// Parts of the supply, each with its way (terminal) of the ground strip, counted from 0.
 const GROUND_WAY_OF_PART: [(&str, usize); 5] = [
@@ -62,9 +62,9 @@ fn ground_hole_of(part_name: &str) -> Point {
     ground_hole(entry.map_or(0, |(_, way)| *way))
 }
 
-/// All wires of the supply; `socket` is the middle of the board's round socket.
+/// All wires of the supply; `socket` is the middle of the board's barrel jack.
 pub fn wires(socket: Point) -> Vec<Wire> {
-    let [plug_plus, plug_minus] = round_plug_terminals(socket);
+    let [plug_plus, plug_minus] = barrel_plug_terminals(socket);
     let segment = |a: Point, b: Point| vec![a, b];
     let thick_wire = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK_WIDTH);
     let first_supply_hole = supply_hole(0);
@@ -145,8 +145,8 @@ pub fn wires(socket: Point) -> Vec<Wire> {
                 (SINGLE_WAY_HOLES_X[0], PLUS_Y + SINGLE_WAY_WIRE_OFFSET),
                 (268.0, PLUS_Y + SINGLE_WAY_WIRE_OFFSET),
                 (268.0, 138.0),
-                (ROUND_PLUG_WIRES_X[0], 138.0),
-                (ROUND_PLUG_WIRES_X[0], plug_plus.1),
+                (BARREL_PLUG_WIRES_X[0], 138.0),
+                (BARREL_PLUG_WIRES_X[0], plug_plus.1),
                 plug_plus,
             ],
             RED,
@@ -156,8 +156,8 @@ pub fn wires(socket: Point) -> Vec<Wire> {
             "round-plug-ground",
             vec![
                 plug_hole,
-                (ROUND_PLUG_WIRES_X[1], plug_hole.1),
-                (ROUND_PLUG_WIRES_X[1], plug_minus.1),
+                (BARREL_PLUG_WIRES_X[1], plug_hole.1),
+                (BARREL_PLUG_WIRES_X[1], plug_minus.1),
                 plug_minus,
             ],
             BLACK,
@@ -189,8 +189,8 @@ pub fn wires(socket: Point) -> Vec<Wire> {
     wires
 }
 
-/// The terminals of the round plug, plus and minus.
-fn round_plug_terminals((x, y): Point) -> [Point; 2] {
+/// The terminals of the barrel plug, plus and minus.
+fn barrel_plug_terminals((x, y): Point) -> [Point; 2] {
     [(x - 40.0, y - 9.0), (x - 40.0, y + 9.0)]
 }
 
@@ -210,7 +210,7 @@ fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
     ))
 }
 
-/// Draws all parts of the supply; `socket` is the middle of the board's round socket.
+/// Draws all parts of the supply; `socket` is the middle of the board's barrel jack.
 pub fn draw(socket: Point) -> Group {
     let mut group = draw_battery(Group::new());
     group = draw_alarm(group);
@@ -242,7 +242,7 @@ pub fn draw(socket: Point) -> Group {
     ] {
         group = group.add(text_start(label, point, 12.0));
     }
-    let [plus, minus] = round_plug_terminals(socket);
+    let [plus, minus] = barrel_plug_terminals(socket);
     draw_case(group, (plus.0, plus.1 - 8.0), (34.0, 34.0), "#8f8f8f")
         .add(rectangle(
             (plus.0 + 34.0, socket.1 - 5.0),
@@ -251,7 +251,7 @@ pub fn draw(socket: Point) -> Group {
         ))
         .add(draw_terminal("round-plug-plus", plus, RED))
         .add(draw_terminal("round-plug-minus", minus, DARK))
-        .add(text_start("round plug,", (44.0, plus.1 - 28.0), 13.0))
+        .add(text_start("barrel plug,", (44.0, plus.1 - 28.0), 13.0))
         .add(text_start("+ inside", (44.0, plus.1 - 13.0), 13.0))
 }
 
