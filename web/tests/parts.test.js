@@ -41,7 +41,7 @@ async function openParts(options) {
   return page;
 }
 
-/** Clicks on the picture, at a share of its width and height; returns the message. */
+/** Clicks on the picture at a fraction of its width and height, and returns the message. */
 async function clickAt(page, xShare, yShare) {
   const { x, y, width, height } = await page.locator('#space').boundingBox();
   await page.mouse.click(x + xShare * width, y + yShare * height);
@@ -123,7 +123,7 @@ test('while a length is dragged, the two parts that meet are red in 3D, and thei
       let redCount = 0;
       for (let n = 0; n < data.length; n += 4) {
         const [r, g, b] = data.subarray(n, n + 3);
-        // The orange of a leg has more green.
+        // The orange of the legs contains more green.
         if (r > 90 && r > 3 * g && r > 3 * b) redCount += 1;
       }
       return redCount;

@@ -1,7 +1,7 @@
 //! The contact model: the movement of a body whose feet are never lifted.
 //!
-//! Four pads, one at each foot, stand on the floor. When the legs swing, not all pads can hold, and friction
-//! decides which of them slide. The body makes the movement that loses the least power to friction. Finding it
+//! Four pads, one at each foot, stand on the floor. When the legs swing, not all pads can stay in place, and friction
+//! decides which of them slide. The body moves so that the least power is lost to friction. Finding it
 //! is a small convex problem: `ground.rs` has the formula, `friction.rs` the solution. The loads of the feet
 //! (`stance.rs`) and the lag of each leg behind its servo (`drive.rs`) are part of the same problem. A pad
 //! counts as a point, whatever its shape: a leg moves its pad without turning it and the body does not tilt, so

@@ -14,7 +14,7 @@ impl Chip {
     fn name(self) -> Option<&'static str> {
         Some(match self.0 {
             [0x1e, 0x95, 0x0f] => "an ATmega328P",
-            [0x1e, 0x95, 0x14] => "an ATmega328, without P",
+            [0x1e, 0x95, 0x14] => "an ATmega328, not an ATmega328P",
             [0x1e, 0x95, 0x16] => "an ATmega328PB",
             [0x1e, 0x94, 0x06] => "an ATmega168",
             [0x1e, 0x94, 0x0b] => "an ATmega168P",
@@ -28,7 +28,7 @@ impl Chip {
 impl fmt::Display for Chip {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [a, b, c] = self.0;
-        let name = self.name().unwrap_or("an unknown chip");
+        let name = self.name().unwrap_or("unknown");
         write!(f, "{name} (signature {a:02X} {b:02X} {c:02X})")
     }
 }

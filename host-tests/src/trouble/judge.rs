@@ -52,8 +52,8 @@ fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
         // A patrol rests for a second, or longer on a low supply.
         max_routine_rest: 125_000 * lizard_rules::MS / i64::from(robot.supplies().slow_pace),
         may_boot_to_rest: mentions("boot rest"),
-        brown_outs_clear_ram: true,
-        is_saved_travel_narrower: mentions("say limit ") && mentions("say factory"),
+        may_brown_outs_clear_ram: true,
+        may_saved_travel_be_narrower: mentions("say limit ") && mentions("say factory"),
         ..Limits::default()
     }
 }

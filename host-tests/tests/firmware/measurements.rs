@@ -31,7 +31,7 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
     bench.uno.take_edges();
     for _ in 0..500 {
         bench.uno.run_ms(1);
-        // The rest of a line that the power cut interrupted may come first.
+        // The remainder of a line that the power cut interrupted may come first.
         let lines = &bench.lines()[lines_before..];
         if lines.iter().any(|line| line.text.contains("# lizard ")) {
             return;
@@ -114,7 +114,7 @@ pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.run_ms(1000 * seconds);
     let edges = bench.uno.edges();
     let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED).collect();
-    // A flash is 160 ms of light and 160 ms of dark; a pause is one second longer.
+    // In a flash the LED is on for 160 ms and off for 160 ms; before a pause it stays off one second longer.
     let mut flash_counts = Vec::new();
     let mut current_count = None;
     for pair in edges.windows(2) {

@@ -1,4 +1,4 @@
-//! Tests of the stored speeds on pads with a grain, by the contact model and by MuJoCo.
+//! Tests of the stored speeds on pads with a grain, as the contact model and MuJoCo compute them.
 //!
 //! With `BLESS_PHYSICS=1`, as in `make docs`, the speeds are written into docs/gaits.md and robots/grain.toml.
 

@@ -47,7 +47,7 @@ impl Observer {
         }
         self.note_accepted_command(answer);
         match effect {
-            Effect::Moves if !self.was_troubled_since(now) => {
+            Effect::Moves if !self.was_disturbed_since(now) => {
                 self.pending.motion = Some((now, now + MAX_WAKE_TIME, [false; 4]));
             }
             Effect::Rests => {
@@ -80,7 +80,7 @@ impl Observer {
             self.pending.motion = None;
             let missing_servo = has_pulses.iter().position(|has_pulse| !has_pulse);
             if let Some(servo) = missing_servo
-                && !self.was_troubled_since(from)
+                && !self.was_disturbed_since(from)
             {
                 self.fail(
                     Rule::MotionHasPulses,
@@ -92,7 +92,7 @@ impl Observer {
             .pending
             .pulses_after_status
             .take_if(|(until, _)| self.now > *until)
-            && !self.was_troubled_since(until - 600 * MS)
+            && !self.was_disturbed_since(until - 600 * MS)
         {
             self.fail(Rule::StatusNamesCause, answer);
         }
@@ -111,7 +111,7 @@ impl Observer {
         if let Some((from, until, rule)) = self.pending.no_pulses
             && (from..until).contains(&now)
             && (rule == Rule::RestEndsPulses
-                || !self.was_troubled_since(from - self.limits.max_frame_remainder))
+                || !self.was_disturbed_since(from - self.limits.max_frame_remainder))
         {
             let ms = (now - from + self.limits.max_frame_remainder) / MS;
             self.fail(rule, format!("A{} has a pulse {ms} ms later", servo + 1));

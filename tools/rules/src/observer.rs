@@ -34,9 +34,9 @@ pub struct Limits {
     /// True if the EEPROM keeps every byte that is written to it.
     pub is_memory_reliable: bool,
     /// True if a brown-out may clear RAM.
-    pub brown_outs_clear_ram: bool,
+    pub may_brown_outs_clear_ram: bool,
     /// True if the saved travel may be narrower than the travel in use.
-    pub is_saved_travel_narrower: bool,
+    pub may_saved_travel_be_narrower: bool,
 }
 
 impl Default for Limits {
@@ -53,8 +53,8 @@ impl Default for Limits {
             max_routine_rest: 0,
             may_boot_to_rest: false,
             is_memory_reliable: true,
-            brown_outs_clear_ram: false,
-            is_saved_travel_narrower: false,
+            may_brown_outs_clear_ram: false,
+            may_saved_travel_be_narrower: false,
         }
     }
 }
@@ -254,7 +254,7 @@ impl Observer {
 
     /// True if a cause outside the firmware may have ended the pulses since a time: a reset, a stall, blocked
     /// interrupts or a low supply.
-    pub(crate) fn was_troubled_since(&self, since: Time) -> bool {
+    pub(crate) fn was_disturbed_since(&self, since: Time) -> bool {
         let rest_mv = self.limits.levels_mv[2] + self.limits.supply_error_mv;
         self.started_at >= since
             || self.cut_at >= since
@@ -313,7 +313,7 @@ impl Observer {
                 answer,
             } => self.judge_answer(line, effect, asked_at, answer),
             Event::Unanswered(asked_at, line) => {
-                if !self.was_troubled_since(asked_at - MS) {
+                if !self.was_disturbed_since(asked_at - MS) {
                     self.fail(Rule::AnswersAlways, format!("no answer to {line}"));
                 }
             }
@@ -332,9 +332,9 @@ impl Observer {
         self.judge_due_promises();
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = self.now - 280 * MS;
-        let is_calm = low_since > self.started_at && self.disturbed_until < low_since;
+        let is_undisturbed = low_since > self.started_at && self.disturbed_until < low_since;
         if self.reports.stopped_at.is_none()
-            && is_calm
+            && is_undisturbed
             && self.supply.is_low_since(stop_mv, low_since)
         {
             self.reports.note_stop(self.now);
@@ -360,9 +360,9 @@ impl Observer {
         self.judge_reset(cause);
         for servo in 0..4 {
             let is_rest_pose_saved = self.must_keep_rest_pose(servo);
-            let keeps_position = cause != Cause::Power && !self.limits.is_saved_travel_narrower;
+            let keeps_position = cause != Cause::Power && !self.limits.may_saved_travel_be_narrower;
             let is_ram_lost = match cause {
-                Cause::BrownOut => self.limits.brown_outs_clear_ram && !has_hung,
+                Cause::BrownOut => self.limits.may_brown_outs_clear_ram && !has_hung,
                 cause => cause == Cause::Power,
             };
             self.servos[servo].is_position_lost |= is_ram_lost;
@@ -405,18 +405,21 @@ impl Observer {
         let now = self.now;
         if cause == Cause::Watchdog {
             let stalled_time = self.stalled_time_before(now);
-            // 100 ms are the watchdog's first stage, less the frame in which the watchdog was fed. The pulses end after
+            // 100 ms is the first stage of the watchdog, less the frame in which it was fed last. The pulses end after
             // the first stage; the reset follows after the second stage.
             if stalled_time < 100 * MS {
                 let ms = stalled_time / MS;
-                self.fail(Rule::NoNeedlessReset, format!("stalled for {ms} ms"));
+                self.fail(
+                    Rule::NoNeedlessReset,
+                    format!("main was stalled for only {ms} ms"),
+                );
             }
         }
         if cause == Cause::BrownOut {
             let first_brown_out = self.brown_out_times[0];
             if first_brown_out > now - 4_000 * MS && self.ordered_at < first_brown_out {
                 let ms = (now - first_brown_out) / MS;
-                self.fail(Rule::BrownOutsEnd, format!("six of them in {ms} ms"));
+                self.fail(Rule::BrownOutsEnd, format!("six brown-outs in {ms} ms"));
             }
             self.brown_out_times.rotate_left(1);
             self.brown_out_times[4] = now;
@@ -442,8 +445,8 @@ impl Observer {
             self.reports.note_order(is_accepted.is_some());
             self.unfinished_motion_count += 1;
         }
-        let is_calm = self.disturbed_until <= self.now;
+        let is_undisturbed = self.disturbed_until <= self.now;
         self.permission
-            .note_order(self.now, effect, is_accepted.is_some() && is_calm);
+            .note_order(self.now, effect, is_accepted.is_some() && is_undisturbed);
     }
 }

@@ -184,7 +184,7 @@ impl Observer {
             ));
         } else if !has_fault
             && self.ordered_at < now - 400 * MS
-            && !self.was_troubled_since(now - 400 * MS)
+            && !self.was_disturbed_since(now - 400 * MS)
         {
             let has_no_pulses = self
                 .servos

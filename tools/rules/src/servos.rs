@@ -243,10 +243,10 @@ impl Observer {
     fn judge_deadman(&mut self, servo: usize) {
         let silence = self.now - self.last_command_read_at;
         // Main is late for about a frame after a stall.
-        let is_calm = self.disturbed_until + 25 * MS <= self.last_command_read_at;
+        let is_undisturbed = self.disturbed_until + 25 * MS <= self.last_command_read_at;
         if self.is_gait_or_routine
             && self.deadman_time > 0
-            && is_calm
+            && is_undisturbed
             && silence > self.deadman_time + MAX_DEADMAN_DELAY
         {
             let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);

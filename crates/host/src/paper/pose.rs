@@ -16,8 +16,8 @@ use crate::{Failure, PoseArgs, RobotFile};
 ///
 /// A pose is safe if it keeps the robot's limits and each servo's travel. If a pose is
 /// singular or cannot be reached, the reason is printed. For a point of head or tail, all four
-/// working modes are listed (each arm bent outward or inward), and for each whether this
-/// robot can take it.
+/// working modes are listed (each arm bent outward or inward), each with a note whether this
+/// robot can reach it.
 #[derive(clap::Args)]
 #[command(
     allow_negative_numbers = true,
@@ -40,11 +40,11 @@ pub struct Args {
     #[arg(long, num_args = 2, value_names = ["X", "Y"], value_parser = Quantity::LENGTH.parser(),
           help_heading = "Pose", conflicts_with = "theta1")]
     tail: Option<Vec<f64>>,
-    /// The subject to print; without a pose, all subjects except the joints are printed for the
-    /// neutral pose
+    /// The subject to print; without a pose, `joints` reads poses from standard input, and the
+    /// others take the neutral pose
     #[arg(long, value_enum, default_value_t, conflicts_with_all = ["head", "tail"])]
     show: Subject,
-    /// Print JSON, of a stream one object a line
+    /// Print JSON; for poses from standard input, one object per line
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -59,11 +59,12 @@ enum Subject {
     /// Every joint, the margins, and whether the pose is safe
     #[default]
     Joints,
-    /// The velocity matrices K (8x4, derivatives of the loop equations by the servo angles) and
-    /// K* (8x8, by the passive joints), their determinants, and the nearest singularities
+    /// The velocity matrices K (8x4, derivatives of the loop equations with respect to the servo
+    /// angles) and K* (8x8, with respect to the passive joints), their determinants, and the
+    /// nearest singularities
     Singularities,
-    /// Degrees of freedom of body and legs, by counting and by the rank of the constraints; what
-    /// can still move with locked servos is named
+    /// Degrees of freedom of body and legs, by counting and by the rank of the constraints, and
+    /// what can still move while the servos are locked
     Freedoms,
     /// Rates and accelerations of the passive joints, each compared with finite differences
     Rates,

@@ -16,7 +16,7 @@ pub struct Bars {
     pub held: bool,
     /// Duration of a cycle at full speed, s.
     pub period: f64,
-    /// The stance's share of the cycle; unused if legs hold.
+    /// The stance's share of the cycle (duty factor); unused if the legs hold.
     pub duty: f64,
     /// Largest sweep of a leg, deg.
     pub amplitude: f64,
@@ -62,7 +62,7 @@ impl Bars {
         })
     }
 
-    /// Returns the gait reversed in time: a gait that walks ahead becomes one that walks back.
+    /// Returns the gait reversed in time: a gait that walks forward becomes one that walks backward.
     ///
     /// A wave's stance and swing are each point-symmetric about their middle. So a wave played
     /// backwards is the negated wave, whose stance begins where the original one ends. A held gait

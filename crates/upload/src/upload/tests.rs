@@ -1,4 +1,4 @@
-//! Uploads to a simulated board and boot loader.
+//! Tests of uploads to a simulated board and boot loader.
 
 use std::path::Path;
 use std::time::Duration;
@@ -250,8 +250,9 @@ fn a_board_is_identified_by_its_boot_loader_and_starts_again() {
     let (refusal, has_started) = identify_board(other);
     assert!(
         has_started
-            && refusal
-                .is_err_and(|message| message.starts_with("the chip is an ATmega328, without P"))
+            && refusal.is_err_and(
+                |message| message.starts_with("the chip is an ATmega328, not an ATmega328P")
+            )
     );
     let mut unplugged = BoardDouble::blank();
     unplugged.unplugged_after_pages = Some(0);
@@ -273,13 +274,10 @@ fn another_chip_is_named_and_not_written() {
     };
     assert_eq!(
         error_for_signature([0x1e, 0x95, 0x14]),
-        "the chip is an ATmega328, without P (signature 1E 95 14); the firmware is for an \
+        "the chip is an ATmega328, not an ATmega328P (signature 1E 95 14); the firmware is for an \
          ATmega328P (signature 1E 95 0F). Nothing was written"
     );
-    assert!(
-        error_for_signature([1, 2, 3])
-            .starts_with("the chip is an unknown chip (signature 01 02 03)")
-    );
+    assert!(error_for_signature([1, 2, 3]).starts_with("the chip is unknown (signature 01 02 03)"));
 }
 
 #[test]
@@ -344,7 +342,7 @@ fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
     assert!(message.contains("the byte at address 0x0085"), "{message}");
     assert!(message.ends_with("write it again"), "{message}");
     assert!(run.starts_in_a_loop());
-    assert_eq!(run.retry_count, 0, "another reset does not mend flash");
+    assert_eq!(run.retry_count, 0, "another reset does not repair flash");
 }
 
 #[test]

@@ -9,11 +9,11 @@ use crate::shared::ink::{
     Anchor, DARK, GREY, SERVO_COLOURS, line, pin_name, text, text_middle, text_start,
 };
 
-/// Distance of the servos' names from the middle of the page, sideways and vertically, pixels.
+/// Distance of the servos' names from the middle of the page, horizontally and vertically, pixels.
 const SERVO_NAME_DISTANCE: f64 = 347.0;
 
 impl View<'_> {
-    /// Adds the labels of servos and parts, with angles and dimensions, and the axes to `group`.
+    /// Adds to `group` the labels of servos and parts, with angles and dimensions, the axes and the scale bar.
     pub(super) fn draw_labels(&self, mut group: Group) -> Group {
         let angles = self.angles();
         for servo in 0..4 {
@@ -99,7 +99,7 @@ impl View<'_> {
     }
 }
 
-/// Draws the axes of the chassis frame, and a scale bar.
+/// Draws the axes of the chassis frame and a scale bar.
 fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
     let origin = (50.0, PAGE_SIZE.1 - 50.0);
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {

@@ -22,7 +22,7 @@ pub struct Firmware {
 
 /// The error for a file that cannot be read, or is not a program for an AVR.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {error}; `make firmware` builds it", path.display())]
+#[error("{}: {error}; `make firmware` builds the firmware", path.display())]
 pub struct ReadError {
     path: PathBuf,
     error: LoadError,
@@ -45,7 +45,7 @@ pub fn read_image(path: &Path) -> Result<Image, ReadError> {
     })
 }
 
-/// The reason why an image is not run.
+/// The reason why an image cannot be run.
 #[derive(Debug, thiserror::Error)]
 enum FirmwareError {
     #[error("there is no firmware at {0}; without --elf, the one inside this program is used")]

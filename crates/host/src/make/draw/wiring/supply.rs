@@ -1,5 +1,5 @@
 //! The supply, from the battery's cells to the strips: plug, fuse, switch, converter, capacitor, low-voltage alarm, and
-//! the barrel plug that supplies the board. Positions are in pixels, and grow downwards and to the right.
+//! the barrel plug that supplies the board. Positions are in pixels and increase to the right and downwards.
 
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 use svg::node::element::Group;
@@ -29,7 +29,7 @@ const FUSE_CONTACTS_X: [f64; 2] = [458.0, 518.0];
 const SWITCH_CONTACTS_X: [f64; 2] = [362.0, 428.0];
 /// Horizontal positions of the left and right holes of the single way after the switch.
 const SINGLE_WAY_HOLES_X: [f64; 2] = [286.0, 322.0];
-/// Distance from the middle of the single way to each of the two wires at its left hole.
+/// Vertical distance from the middle of the single way to each of the two wires at its left hole.
 const SINGLE_WAY_WIRE_OFFSET: f64 = 5.0;
 /// The converter's left and right edges.
 const CONVERTER_EDGES_X: [f64; 2] = [130.0, 235.0];
@@ -42,7 +42,7 @@ const CAPACITOR_X: f64 = 150.0;
 /// Horizontal positions of the two wires that lead down to the barrel plug.
 const BARREL_PLUG_WIRES_X: [f64; 2] = [20.0, 34.0];
 
-/// Parts of the supply, each with its way (terminal) of the ground strip, counted from 0.
+/// Parts of the supply, each with its way (terminal) on the ground strip, counted from 0.
 const GROUND_WAY_OF_PART: [(&str, usize); 5] = [
     ("battery", 0),
     ("converter-in", 1),
@@ -164,15 +164,15 @@ pub fn wires(socket: Point) -> Vec<Wire> {
             THIN_WIDTH,
         ),
     ];
-    let [upper_leg, lower_leg] = capacitor_legs();
+    let [upper_lead, lower_lead] = capacitor_leads();
     wires.push(thick_wire(
         "capacitor-ground",
-        segment(upper_leg, ground_hole_of("capacitor")),
+        segment(upper_lead, ground_hole_of("capacitor")),
         BLACK,
     ));
     wires.push(thick_wire(
         "capacitor-supply",
-        segment(lower_leg, supply_hole(1)),
+        segment(lower_lead, supply_hole(1)),
         RED,
     ));
     for (number, (y, colour)) in
@@ -194,8 +194,8 @@ fn barrel_plug_terminals((x, y): Point) -> [Point; 2] {
     [(x - 40.0, y - 9.0), (x - 40.0, y + 9.0)]
 }
 
-/// The ends of the capacitor's legs, minus and plus.
-fn capacitor_legs() -> [Point; 2] {
+/// The ends of the capacitor's leads, minus and plus.
+fn capacitor_leads() -> [Point; 2] {
     [
         (CAPACITOR_X, ground_hole_of("capacitor").1),
         (CAPACITOR_X, supply_hole(1).1),
@@ -214,25 +214,25 @@ fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
 pub fn draw(socket: Point) -> Group {
     let mut group = draw_battery(Group::new());
     group = draw_alarm(group);
-    group = draw_supply_line(group);
+    group = draw_fuse_switch_and_way(group);
     group = draw_converter(group);
-    let [upper_leg, lower_leg] = capacitor_legs();
+    let [upper_lead, lower_lead] = capacitor_leads();
     group = draw_case(
         group,
-        (CAPACITOR_X - 9.0, upper_leg.1 + 5.0),
-        (18.0, lower_leg.1 - upper_leg.1 - 10.0),
+        (CAPACITOR_X - 9.0, upper_lead.1 + 5.0),
+        (18.0, lower_lead.1 - upper_lead.1 - 10.0),
         "#dddddd",
     )
     .add(rectangle(
-        (CAPACITOR_X - 9.0, upper_leg.1 + 5.0),
+        (CAPACITOR_X - 9.0, upper_lead.1 + 5.0),
         (18.0, 7.0),
         DARK,
     ))
-    .add(draw_terminal("capacitor-minus", upper_leg, DARK))
-    .add(draw_terminal("capacitor-plus", lower_leg, RED))
+    .add(draw_terminal("capacitor-minus", upper_lead, DARK))
+    .add(draw_terminal("capacitor-plus", lower_lead, RED))
     .add(text_start(
         "1000 µF, 10 V",
-        (CAPACITOR_X + 8.0, upper_leg.1 - 6.0),
+        (CAPACITOR_X + 8.0, upper_lead.1 - 6.0),
         13.0,
     ));
     for (label, point) in [
@@ -341,7 +341,7 @@ fn draw_alarm(group: Group) -> Group {
 }
 
 /// Draws the fuse, the switch and the single way after it.
-fn draw_supply_line(group: Group) -> Group {
+fn draw_fuse_switch_and_way(group: Group) -> Group {
     let mut group = group;
     for ([left, right], fill) in [
         (FUSE_CONTACTS_X, "#fde9e9"),
