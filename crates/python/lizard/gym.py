@@ -51,7 +51,9 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self.robot = model or Model.default()
         self.engine = mujoco.MjModel.from_xml_string(self.robot.mjcf(shapes=False))
         if self.engine.numeric("back over forward").data[0] != 1:
-            raise ValueError("[ground] ratio is not 1: MuJoCo cannot simulate pads with a grain (directional friction)")
+            raise ValueError(
+                "[ground] ratio is not 1: MuJoCo cannot simulate pads with a grain (directional friction)"
+            )
         _set_timestep(self.engine, timestep)
         self.data = mujoco.MjData(self.engine)
         self.friction_spread = friction_spread
@@ -91,7 +93,9 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self, action: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         wanted_sweeps = np.clip(action, -1, 1) * math.radians(REACH)
-        target = self._target + np.clip(wanted_sweeps - self._target, -self._max_change, self._max_change)
+        target = self._target + np.clip(
+            wanted_sweeps - self._target, -self._max_change, self._max_change
+        )
         held = not self.robot.solve(self.robot.neutral + np.degrees(target)).safe
         if not held:
             self._target = target
@@ -116,7 +120,10 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         vx, vy = self.data.qvel[:2]
         cos, sin = math.cos(heading), math.sin(heading)
         body = [vy * cos - vx * sin, -vx * cos - vy * sin, self.data.qvel[5]]
-        servos = [self.data.qpos[self._qpos_indices], self.data.qvel[self._qvel_indices]]
+        servos = [
+            self.data.qpos[self._qpos_indices],
+            self.data.qvel[self._qvel_indices],
+        ]
         return np.concatenate(
             [*servos, body, self._target], dtype=np.float32, casting="same_kind"
         )

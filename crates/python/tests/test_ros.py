@@ -35,7 +35,9 @@ def test_joint_values_close_every_loop_of_the_urdf(robot, program, tmp_path):
         for joint in ElementTree.fromstring(urdf).iterfind("joint[mimic]")
     ]
     assert len(mimic_joints) == 16
-    body_names = [mujoco_model.body(number).name for number in range(mujoco_model.nbody)]
+    body_names = [
+        mujoco_model.body(number).name for number in range(mujoco_model.nbody)
+    ]
     pairs = [
         (name, f"{name[:-1]}2")
         for name in body_names
@@ -66,12 +68,16 @@ def robot():
 
 def test_the_chosen_gait_and_pace_come_nearest_of_all(robot, model):
     driver = Driver(robot, model)
-    full_speeds = {speed.gait: (speed.forward, REACH * speed.turn) for speed in driver.speeds}
+    full_speeds = {
+        speed.gait: (speed.forward, REACH * speed.turn) for speed in driver.speeds
+    }
     walk = model.gait("walk")
     assert full_speeds["walk"][0] == pytest.approx(
         walk.predict(with_servos=True).forward / 1000 / walk.period
     )
-    assert "look" not in full_speeds  # two feet pull against the other two, so where it goes is uncertain
+    assert (
+        "look" not in full_speeds
+    )  # two feet pull against the other two, so where it goes is uncertain
     for forward, turn in np.random.default_rng(2).uniform(-1, 1, (200, 2)) * (
         0.06,
         0.5,
@@ -115,7 +121,9 @@ def test_the_robot_walks_while_velocities_arrive(robot, model):
     assert (status.gait, status.speed) == ("stop", 100)
 
 
-def test_a_robot_that_stopped_by_itself_reports_why_once_and_then_walks_again(robot, model):
+def test_a_robot_that_stopped_by_itself_reports_why_once_and_then_walks_again(
+    robot, model
+):
     driver = Driver(robot, model)
     driver.drive(0.03, 0)
     robot._port.board.reset()
