@@ -417,6 +417,8 @@ export class Session {
     batch(() => {
       this.state.link.value = link;
       this.state.banner.value = undefined;
+      // A radio that was out of reach has nothing to do with the new link.
+      this.state.isSilent.value = false;
       this.isWatching = false;
       this.mayAsk = false;
       this.startDialogue();

@@ -94,6 +94,17 @@ test('a board with another robot of the list is reported, and one press shows it
   await page.locator('#trouble', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();
 });
 
+test('the alarm for a board that is out of reach ends when the board is gone', async () => {
+  const page = await openWithBoard('robot', 8000);
+  await page.evaluate(() => {
+    const { link } = window.lizard;
+    link.onReach(false);
+    link.onGone('The test has taken it away.');
+  });
+  await page.waitForFunction(() => !window.lizard.isReal);
+  assert.equal(await page.locator('#alarm').isHidden(), true);
+});
+
 test('disconnecting a board stops it', async () => {
   const page = await openWalking();
   await page.locator('#connect').click();
