@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
 import { closeBrowser, closePages, complaints, openBrowser, openPage, text, unfold } from './browser.js';
-import { openWithBoard, runUntil } from './board.js';
+import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil } from './board.js';
 import { installFakeSerial } from './fake-serial.js';
 
 before(openBrowser);
@@ -22,7 +22,7 @@ async function openWalking() {
 }
 
 test('a new UNO is identified after some seconds, and one button writes the firmware', async () => {
-  const page = await openWithBoard(null, 8000);
+  const page = await openWithErasedBoard();
   await page.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(page, '#where'), 'on a board on USB without this firmware');
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).click();
@@ -39,13 +39,8 @@ test('a new UNO is identified after some seconds, and one button writes the firm
 });
 
 test('for a board that does not answer, the page asks whether it is a UNO or a Nano', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.evaluate(() => (window.flashedRobot = null));
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
-  await page.evaluate(() => (window.attachedBoard.send = () => {}));
-  await page.clock.runFor(9000);
-  await page.locator('#trouble', { hasText: 'no boot loader answers. Is it a UNO or a Nano?' }).waitFor();
+  const page = await openWithDeafBoard();
+  await runUntil(page, 'the page asks', async () => /no boot loader answers\. Is it a UNO or a Nano\?/.test(await text(page, '#trouble')));
 });
 
 test('a board that its port does not reset is asked for its state and tracked', async () => {

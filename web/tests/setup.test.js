@@ -8,7 +8,7 @@ import { join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { openWithBoard, runUntil } from './board.js';
+import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil } from './board.js';
 import { advance, closeBrowser, closePages, complaints, openBrowser, openStanding, overflow, openPage, TIMEOUT_MS, text, unfold } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
@@ -52,7 +52,7 @@ async function readCalibration(page) {
 }
 
 test('a new UNO becomes a calibrated robot that walks, and lizard calibrate restore accepts its file', async () => {
-  const page = await openWithBoard(null, 8000);
+  const page = await openWithErasedBoard();
   await dialogOf(page).getByText('2 of 9: Write the firmware').waitFor();
   await dialogOf(page).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
   await pressAndWait(page, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
@@ -162,13 +162,8 @@ test('a board with another robot is recognized, and gets only the page\'s robot 
 });
 
 test('a board that does not answer is reported, and no step is a dead end', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.evaluate(() => (window.flashedRobot = null));
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
-  await page.evaluate(() => (window.attachedBoard.send = () => {}));
-  await page.clock.runFor(10000);
-  await dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').waitFor();
+  const page = await openWithDeafBoard();
+  await runUntil(page, 'the dialog reports it', () => dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').isVisible());
   await pressAndWait(page, 'Write firmware and robot', /^not written: no boot loader answers/);
   await goToStep(page, 'Horns');
   await dialogOf(page).getByText('No robot with this firmware answers').waitFor();
@@ -213,7 +208,7 @@ test('unplugging the board is reported at any step, and the dialog continues whe
 });
 
 test('a board that is unplugged while it is written is reported, and can be written when it is back', async () => {
-  const page = await openWithBoard(null, 8000);
+  const page = await openWithErasedBoard();
   await press(page, 'Write firmware and robot');
   await page.clock.runFor(1500);
   await page.evaluate(() => window.unplug());

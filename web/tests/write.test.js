@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
-import { openWithBoard, runUntil } from './board.js';
+import { openWithBoard, openWithErasedBoard, runUntil } from './board.js';
 import { closeBrowser, closePages, complaints, openBrowser, openStanding, openPage, text, unfold } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { imageOf } from './image.js';
@@ -172,12 +172,7 @@ test('a board unplugged while the firmware is written does nothing, and can be w
 });
 
 test('a robot alone is not written to a board without this firmware, and the message says why', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.evaluate(() => (window.flashedRobot = null));
-  await page.locator('#connect').click();
-  await runUntil(page, 'the board is identified', async () =>
-    /without this firmware$/.test(await text(page, '#where')));
-  await unfoldFlashPanel(page);
+  const page = await unfoldFlashPanel(await openWithErasedBoard());
   await writeRobotAlone(page);
   await waitForMessage(page, /^not written: the board has no program, and a robot alone moves nothing: write the firmware, too\. Nothing was written$/);
 });
