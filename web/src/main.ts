@@ -65,8 +65,7 @@ declare global {
 const troubles = new Troubles();
 
 async function start(): Promise<void> {
-  const module = await files.wasm();
-  const choice = await RobotChoice.load();
+  const [module, choice] = await Promise.all([files.wasm(), RobotChoice.load()]);
   const session = new Session(load(module), {
     onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
@@ -104,7 +103,7 @@ async function start(): Promise<void> {
   let latestCycle = 0;
   const connectButton = element<HTMLButtonElement>('connect');
   const radioButton = element<HTMLButtonElement>('radio');
-  const predictor = new Predictor(module, session);
+  const predictor = new Predictor(session);
   const scope = new ScopeView(session);
   const margins = new MarginsView(session);
   const maps = new MapsView(session);
@@ -116,28 +115,27 @@ async function start(): Promise<void> {
   session.followRobot(() => floor.clearTracks());
   const isSetupOpen = () => setup.isOpen;
   const drive = new Drive(session, predictor);
-  const askDrive = (line: string) => drive.ask(line);
-  const pace = new Pace(session, askDrive);
-  const steer = new Steering(() => predictor.gaits, (line) => void drive.ask(line), isSetupOpen, () => pace.percent);
+  new Pace(session);
+  const steer = new Steering(session, predictor, isSetupOpen);
   const writer = new Writer(session);
   new World(session);
   new Health(session, writer);
   new Lengths(session, (edits) => sketch.offerValidLengths(edits));
   const parts = new PartsView(session);
   const fit = new FitView(session, parts);
-  const sketch = new Sketch(module, session, fit);
-  const recordView = new RecordView(session, floor, askDrive, () => pace.percent);
+  const sketch = new Sketch(session, fit);
+  const recordView = new RecordView(session, floor);
   new Calibrate(session);
   const alarm = new Alarm(session);
   const remote = new Remote();
   const text: RobotText = new RobotText(session, writer, () => routines.show());
-  const routines = new RoutinesView(module, session, text, () => pace.percent, askDrive, writer);
-  new GaitsView(module, session, askDrive, writer, (ownGait, foundGait, output) => {
+  const routines = new RoutinesView(session, text, writer);
+  new GaitsView(session, writer, (ownGait, foundGait, output) => {
     // The second robot is drawn from above alone.
     parts.set3d(false);
     return recordView.compare(ownGait, foundGait, output);
   });
-  new PathView(module, session, askDrive, writer);
+  new PathView(session, writer);
   const flash = new FlashView(session, writer);
   const setup: Setup = new Setup(session, writer, () => connectBoard());
   const address = new Address(session, choice.chosenFile);
@@ -164,7 +162,7 @@ async function start(): Promise<void> {
     const gait = gaitFor({ ahead: 1, left: 0 }, predictor.gaits);
     if (isIntroOver || !gait || isSetupOpen() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
     isIntroOver = true;
-    void drive.ask(`${WORDS.speed} 50`).then(() => drive.ask(gait));
+    void session.drive(`${WORDS.speed} 50`).then(() => session.drive(gait));
   };
   // The user has taken over.
   for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });

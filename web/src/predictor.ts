@@ -18,13 +18,10 @@ export interface PredictedGait {
 export class Predictor {
   /** The predictions for the session's robot so far, by the gaits' commands. */
   readonly predictions = signal<ReadonlyMap<string, GaitPrediction>>(new Map());
-  private helper: Helper<RobotFunctions> | null = null;
+  private helper: Promise<Helper<RobotFunctions>> | null = null;
   private questionCount = 0;
 
-  constructor(
-    private readonly module: WebAssembly.Module,
-    private readonly session: Session,
-  ) {
+  constructor(private readonly session: Session) {
     session.followRobot(() => (this.predictions.value = new Map()));
     const { description, floor, servos } = session.state;
     follow([description, floor, servos], () => description.value && void this.predict());
@@ -48,8 +45,7 @@ export class Predictor {
     const firstIndex = Math.max(0, gaits.findIndex(({ command }) => command === currentGait));
     for (let n = 0; n < gaits.length; n++) {
       const gait = (firstIndex + n) % gaits.length;
-      this.helper ??= robotHelper(this.module);
-      const prediction = await this.helper.ask((robot) => robot.predict({ toml, floor, servos, gait }));
+      const prediction = await (await (this.helper ??= robotHelper())).ask((robot) => robot.predict({ toml, floor, servos, gait }));
       if (questionNumber !== this.questionCount) return;
       this.put(gaits[gait].command, prediction);
     }

@@ -2,9 +2,9 @@
 // wasm/src.
 import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type NoTrial, type Refused, Robot } from '../generated/lizard';
 
-export { calibrationText, parseCalibration, Robot } from '../generated/lizard';
+export { calibrationText, parseBanner, parseCalibration, parsePoseReport, parseStatus, Robot } from '../generated/lizard';
 export type {
-  Bars, Calibration, Description, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, NoTrial, Place, ReachArea, Refused, RoundPath, Routine, Scene, ServoSettings, Trial,
+  Banner, Bars, Calibration, Description, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, NoTrial, Place, ReachArea, Refused, RoundPath, Routine, Scene, ServoSettings, Status, Trial,
 } from '../generated/lizard';
 export type {
   Legs as Kind, Lengths as TriedLengths, Map as SingularityMap, ModelEntry as ServoModel, Movement as Displacement, PlateEntry as Plate, Spot as Point,

@@ -3,8 +3,7 @@
 import { signal } from '@preact/signals-core';
 
 import type { Link } from './link/link';
-import type { Description, Floor } from './robot';
-import type { Banner, Status } from './status';
+import type { Banner, Description, Floor, Status } from './robot';
 
 /** The firmware's pace after a reset, percent. */
 export const FULL_PACE = 100;
@@ -28,6 +27,8 @@ export class SessionState {
   readonly gait = signal('');
   /** The robot's pace, percent. */
   readonly pace = signal(FULL_PACE);
+  /** The refusal of the last line that drives the robot, for the user; empty if it was accepted. */
+  readonly refusal = signal('');
   /** The last answer to `status`; null before the first. */
   readonly status = signal<Status | null>(null);
   /** True while the robot leaves a line unanswered. */

@@ -10,18 +10,9 @@ import { Deadman } from './link/deadman';
 import { type Answer, Dialogue, DroppedQuestion, BANNER_PREFIX } from './link/dialogue';
 import { GONE_MESSAGE, type Link, type SimulatedLink } from './link/link';
 import { UnoLink } from './link/uno-link';
-import {
-  type Description,
-  type Floor,
-  type Four,
-  type Frame,
-  isRefused,
-  type Predictions,
-  type Refused,
-  type Robot,
-} from './robot';
+import { isRefused, parseBanner, parsePoseReport, parseStatus } from './robot';
+import type { Banner, Description, Floor, Four, Frame, Predictions, Refused, Robot, Status } from './robot';
 import { type BoardBanner, FULL_PACE, SessionState } from './session-state';
-import { type Banner, parseBanner, type Status, parseStatus, parseReportedPose } from './status';
 import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
 import { type CycleDisplacement, WalkedPath } from './walked';
@@ -144,6 +135,11 @@ export class Session {
 
   get gait(): string {
     return this.state.gait.value;
+  }
+
+  /** The robot's pace, percent. */
+  get pace(): number {
+    return this.state.pace.value;
   }
 
   /** The board's firmware and robot; undefined until known. */
@@ -443,7 +439,7 @@ export class Session {
   }
 
   private handleLine(line: string): void {
-    const angles = parseReportedPose(line);
+    const angles = parsePoseReport(line);
     if (angles && this.isReal) {
       this.handlePose(angles);
       return;
@@ -488,7 +484,7 @@ export class Session {
 
   private setPace(percent: number): void {
     // A cycle whose pace changes is not measured.
-    if (percent !== this.state.pace.value) this.walkedPath.clear();
+    if (percent !== this.pace) this.walkedPath.clear();
     this.state.pace.value = percent;
   }
 
@@ -535,6 +531,12 @@ export class Session {
     }
   }
 
+  /** Sends a line that drives the robot. Its refusal is shown beside the gaits' buttons until a line is accepted. */
+  async drive(line: string): Promise<void> {
+    const answer = await this.ask(line);
+    if (answer) this.state.refusal.value = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
+  }
+
   /** Asks for the robot's state; null without an answer. */
   async status(): Promise<Status | null> {
     const answer = await this.ask(WORDS.status, true, STATUS_TIMEOUT_MS);
@@ -543,11 +545,11 @@ export class Session {
 
   /** Handles the robot's state as soon as its line is read: later it could overwrite a newer state. */
   private handleStatus(status: Status): void {
-    if (status.speed !== null) this.setPace(status.speed);
+    if (status.pace !== null) this.setPace(status.pace);
     this.listener.onTrouble('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
     const gait = status.gait.replaceAll('-', ' ');
     // `center` is a pose for the robot, and a routine that rests is still under way.
-    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === 'none');
+    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === null);
     // The page has missed the start of this activity, for example because its link was cut.
     if (gait !== this.gait && !isKnown) this.setGait(gait);
     this.state.status.value = status;
@@ -655,7 +657,7 @@ export class Session {
    */
   measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.state.pace.value) : null;
+    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.pace) : null;
   }
 
   /**

@@ -22,6 +22,7 @@
 //! neither needs a file. On a microcontroller use `lizard-core`: this crate needs `std` and
 //! floating point.
 
+mod banner;
 mod calibration;
 mod checks;
 mod file;
@@ -37,6 +38,7 @@ mod tables;
 mod testing;
 mod units;
 
+pub use banner::{Banner, RobotIdentity};
 pub use calibration::{Calibration, ServoSettings, Transfer};
 pub use checks::{
     Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, PeakSpeed, SimulatedCycle, TableError,
@@ -58,6 +60,6 @@ pub use reports::{
     ServoTable, SpringCost, UNDECIDED_NOTE, WITHOUT_CONTACTS_NOTE, plausible_range,
 };
 pub use robot::Robot;
-pub use status::{Status, parse_angles};
+pub use status::{Status, parse_pose_report};
 pub use tables::{CellMaps, CoreRobot, flash};
 pub use units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE, STILL_FRAMES};

@@ -1,15 +1,21 @@
-//! The robot's answer to `status`: reading it, and shortening it to one line.
+//! The robot's reports about itself: its answer to `status`, and the poses that it sends after `watch`.
 
 /// The name of the fault of a board without a usable robot in its flash.
 const NO_ROBOT_FAULT: &str = "robot";
 
 /// The state that a robot reports.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "camelCase"))]
 pub struct Status {
     /// The name of a gait, with hyphens for spaces, or `pose`, `stop` or `rest`.
     pub gait: String,
+    /// Phase of the gait's cycle, 0 to 1; 0 while no gait runs.
+    pub phase: f64,
     /// Servo angles, degrees, chassis frame; `None` without a robot in the flash.
     pub pose: Option<[f64; 4]>,
+    /// Pace of the gaits, percent; `None` without a robot in the flash.
+    pub pace: Option<f64>,
     /// Number of frames since power-on.
     pub frames: u64,
     /// The smallest of the guard's margins, a sine; `None` without a robot in the flash.
@@ -26,6 +32,10 @@ pub struct Status {
     pub late_edges: u32,
     /// Number of received bytes that were lost.
     pub lost_bytes: u32,
+    /// Cause of the last reset.
+    pub reset_cause: String,
+    /// Number of resets since power-on.
+    pub reset_count: u32,
 }
 
 impl Status {
@@ -41,6 +51,7 @@ impl Status {
                 .map(|(_, value)| value)
         };
         let number_of = |key: &str| value_of(key)?.parse().ok();
+        let count_of = |key: &str| value_of(key).and_then(|n| n.parse().ok()).unwrap_or(0);
         let pose = value_of("pose").and_then(parse_angles);
         let margin = number_of("margin");
         let has_pose_and_margin = pose.is_some() && margin.is_some();
@@ -49,7 +60,9 @@ impl Status {
         }
         Some(Self {
             gait: value_of("gait")?.to_owned(),
+            phase: number_of("phase").unwrap_or(0.0),
             pose,
+            pace: number_of("speed"),
             frames: value_of("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
             margin,
             is_held: value_of("guard") == Some("held"),
@@ -58,10 +71,10 @@ impl Status {
                 .map(str::to_owned),
             vcc: number_of("vcc"),
             rail: number_of("rail"),
-            late_edges: value_of("late").and_then(|n| n.parse().ok()).unwrap_or(0),
-            lost_bytes: value_of("rx_lost")
-                .and_then(|n| n.parse().ok())
-                .unwrap_or(0),
+            late_edges: count_of("late"),
+            lost_bytes: count_of("rx_lost"),
+            reset_cause: value_of("reset").unwrap_or_default().to_owned(),
+            reset_count: count_of("resets"),
         })
     }
 
@@ -101,9 +114,15 @@ impl Status {
     }
 }
 
-/// Parses four angles, separated by commas; `None` for any other text.
+/// Reads a line `# t=<frame> pose=<angles>`: the frame and the servo angles, degrees. `None` for any other line.
 #[must_use]
-pub fn parse_angles(text: &str) -> Option<[f64; 4]> {
+pub fn parse_pose_report(line: &str) -> Option<(u64, [f64; 4])> {
+    let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
+    Some((frame.parse().ok()?, parse_angles(pose)?))
+}
+
+/// Parses four angles, separated by commas; `None` for any other text.
+fn parse_angles(text: &str) -> Option<[f64; 4]> {
     let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
     angles?.try_into().ok()
 }
@@ -120,6 +139,11 @@ mod tests {
     fn a_status_is_read_and_shortened() {
         let status = Status::parse(WALKING_STATUS).expect("it is a status");
         assert!(status.is_moving());
+        assert_eq!((status.phase, status.pace), (0.35, Some(100.0)));
+        assert_eq!(
+            (status.reset_cause.as_str(), status.reset_count),
+            ("external", 3)
+        );
         assert_eq!(
             status.status_line(),
             "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \
@@ -147,6 +171,15 @@ mod tests {
         let status = Status::parse(line).expect("it is a status");
         assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));
         assert_eq!(status.status_line(), "rest  FAULT robot");
+    }
+
+    #[test]
+    fn a_reported_pose_has_four_angles() {
+        let report = parse_pose_report("# t=7 pose=1.00,2.00,3.00,4.50");
+        assert_eq!(report, Some((7, [1.0, 2.0, 3.0, 4.5])));
+        for line in ["# t=7 pose=1,2,3", "# t= pose=1,2,3,4", "t=7 pose=1,2,3,4"] {
+            assert_eq!(parse_pose_report(line), None, "{line}");
+        }
     }
 
     #[test]

@@ -14,9 +14,9 @@ export async function takeGait(session: Session, gait: EditedGait): Promise<Refu
  * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refused for a board on
  * USB, which has only the gaits that are written on it.
  */
-export async function tryGait(session: Session, gait: EditedGait, ask: (line: string) => Promise<unknown>): Promise<Refused | null> {
+export async function tryGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   const refusal = await restartWithGait(session, gait);
-  if (!refusal) await ask(gait.name.replaceAll('-', ' '));
+  if (!refusal) await session.drive(gait.name.replaceAll('-', ' '));
   return refusal;
 }
 

@@ -2,29 +2,6 @@
 // packets and cannot reset a board. If it is out of reach for a while, the link tries to reach it again.
 import { sleep, type Link } from './link';
 
-/** The parts of Web Bluetooth that the page uses; TypeScript's library does not declare them. */
-interface Characteristic extends EventTarget {
-  readonly value?: DataView;
-  readonly properties: { writeWithoutResponse: boolean };
-  startNotifications(): Promise<unknown>;
-  writeValueWithResponse(bytes: Uint8Array): Promise<void>;
-  writeValueWithoutResponse(bytes: Uint8Array): Promise<void>;
-}
-
-interface Service {
-  getCharacteristic(id: number | string): Promise<Characteristic>;
-}
-
-interface Device extends EventTarget {
-  readonly name?: string;
-  readonly gatt: { connect(): Promise<{ getPrimaryService(id: number | string): Promise<Service> }>; disconnect(): void };
-}
-
-interface Bluetooth {
-  getAvailability(): Promise<boolean>;
-  requestDevice(options: { filters: object[]; optionalServices: (number | string)[] }): Promise<Device>;
-}
-
 /** The serial services of the HM-10 and of Nordic's modules, each with its characteristics for writing and reading. */
 const SERIAL_SERVICES = [
   { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
@@ -41,18 +18,16 @@ const PACKET_BYTES = 20;
 /** Time from one attempt to reach a module to the next, ms. */
 const RETRY_MS = 500;
 
-function bluetooth(): Bluetooth | undefined {
-  return (navigator as Navigator & { bluetooth?: Bluetooth }).bluetooth;
-}
-
+/** Web Bluetooth; undefined in a browser without it. */
+const bluetooth = navigator.bluetooth as Bluetooth | undefined;
 const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
 /** Advice for a user whose iPhone or iPad has no Web Bluetooth; null on another device or browser. */
 export const IPHONE_ADVICE =
-  isApple && !bluetooth() ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
+  isApple && !bluetooth ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
 
 /** Returns the reason why this browser cannot reach a Bluetooth module; null if it can. */
 export function bluetoothProblem(): string | null {
-  if (bluetooth()) return null;
+  if (bluetooth) return null;
   return (
     IPHONE_ADVICE ??
     'This browser cannot reach a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".'
@@ -64,12 +39,16 @@ export class BluetoothLink implements Link {
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   onReach: (isInReach: boolean) => void = () => {};
-  private writeCharacteristic: Characteristic | null = null;
+  private writeCharacteristic: BluetoothRemoteGATTCharacteristic | null = null;
   /** Settles when all writes so far are done. */
   private pendingWrites: Promise<void> = Promise.resolve();
   private isClosing = false;
 
-  private constructor(private readonly device: Device) {
+  /** The module's services; every Bluetooth LE device that a user has picked has them. */
+  private readonly gatt: BluetoothRemoteGATTServer;
+
+  private constructor(private readonly device: BluetoothDevice) {
+    this.gatt = device.gatt!;
     device.addEventListener('gattserverdisconnected', () => void this.reconnect());
   }
 
@@ -79,14 +58,13 @@ export class BluetoothLink implements Link {
 
   /** Lets the user pick a module and connects to it; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<BluetoothLink | null> {
-    const radio = bluetooth();
-    if (!radio) throw new Error(bluetoothProblem() ?? '');
+    if (!bluetooth) throw new Error(bluetoothProblem() ?? '');
     // False without a radio, but also if the page may not use it.
-    const isAvailable = await radio.getAvailability();
+    const isAvailable = await bluetooth.getAvailability();
     const filters = [...SERIAL_SERVICES.map(({ service }) => ({ services: [service] })), ...NAME_PREFIXES.map((namePrefix) => ({ namePrefix }))];
-    let device: Device;
+    let device: BluetoothDevice;
     try {
-      device = await radio.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
+      device = await bluetooth.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
     } catch (error) {
       // The error of a chooser closed without a choice. Without the system's permission a browser gives the same
       // error with another message.
@@ -101,7 +79,7 @@ export class BluetoothLink implements Link {
   }
 
   private async connect(): Promise<void> {
-    const server = await this.device.gatt.connect();
+    const server = await this.gatt.connect();
     for (const candidate of SERIAL_SERVICES) {
       const service = await server.getPrimaryService(candidate.service).catch(() => null);
       if (!service) continue;
@@ -114,7 +92,7 @@ export class BluetoothLink implements Link {
       this.writeCharacteristic = candidate.to === candidate.from ? readCharacteristic : await service.getCharacteristic(candidate.to);
       return;
     }
-    this.device.gatt.disconnect();
+    this.gatt.disconnect();
     throw new Error(`${this.device.name ?? 'The module'} has no serial line: neither the service FFE0 of an HM-10 nor Nordic's.`);
   }
 
@@ -154,6 +132,6 @@ export class BluetoothLink implements Link {
     this.isClosing = true;
     // The bytes of earlier writes go out first, unless that takes too long.
     await Promise.race([this.pendingWrites.catch(() => {}), sleep(RETRY_MS)]);
-    this.device.gatt.disconnect();
+    this.gatt.disconnect();
   }
 }

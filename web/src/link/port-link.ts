@@ -3,20 +3,6 @@
 import { messageOf } from '../trouble';
 import { BAUD, GONE_MESSAGE, sleep, type Link } from './link';
 
-/** The parts of Web Serial that the page uses; TypeScript's library does not declare them. */
-interface SerialPort {
-  readonly readable: ReadableStream<Uint8Array> | null;
-  readonly writable: WritableStream<Uint8Array> | null;
-  open(options: { baudRate: number; bufferSize?: number }): Promise<void>;
-  close(): Promise<void>;
-  getInfo(): { usbVendorId?: number; bluetoothServiceClassId?: number | string };
-  setSignals(signals: { dataTerminalReady?: boolean; requestToSend?: boolean }): Promise<void>;
-}
-
-interface Serial {
-  requestPort(options: { allowedBluetoothServiceClassIds: string[] }): Promise<SerialPort>;
-}
-
 /** Bluetooth's serial port profile, which an HC-05 has. */
 const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 /** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
@@ -26,14 +12,8 @@ export const NO_SERIAL_MESSAGE = 'This browser cannot reach a board on USB: it h
 /** Length of the pulse on the reset line, ms. */
 const RESET_PULSE_MS = 50;
 
-function serial(): Serial | undefined {
-  return (navigator as Navigator & { serial?: Serial }).serial;
-}
-
 /** True if this browser can open a port. */
-export function hasSerial(): boolean {
-  return serial() !== undefined;
-}
+export const hasSerial = () => Boolean(navigator.serial);
 
 export class PortLink implements Link {
   onBytes: (bytes: Uint8Array) => void = () => {};
@@ -62,11 +42,10 @@ export class PortLink implements Link {
 
   /** Lets the user pick a port and opens it, which resets a UNO; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<PortLink | null> {
-    const serialApi = serial();
-    if (!serialApi) throw new Error(NO_SERIAL_MESSAGE);
+    if (!hasSerial()) throw new Error(NO_SERIAL_MESSAGE);
     let port: SerialPort;
     try {
-      port = await serialApi.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
+      port = await navigator.serial.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
     } catch (error) {
       // The error of a chooser that was closed without a choice.
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;

@@ -45,6 +45,12 @@ export function element<T extends HTMLElement>(id: string): T {
   return node as T;
 }
 
+/** Shows a message in a box, which is hidden while there is none. */
+export function showMessage(box: HTMLElement, text: string): void {
+  setText(box, text);
+  box.hidden = text === '';
+}
+
 /** Sets the text of an element unless it is there already, so that nothing is laid out or read aloud again. */
 export function setText(box: HTMLElement, text: string): void {
   if (box.textContent !== text) box.textContent = text;

@@ -6,7 +6,7 @@ import type { Predictor } from '../predictor';
 import type { Description, Displacement } from '../robot';
 import type { Session } from '../session';
 import { WORDS } from '../words';
-import { element } from './canvas';
+import { element, showMessage } from './canvas';
 import { make } from './make';
 
 /** Number of characters that fit on a button of the usual width. */
@@ -39,22 +39,15 @@ export class Drive {
   ) {
     document.addEventListener('click', (event) => {
       const button = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-command]') : null;
-      if (button?.dataset.command) void this.ask(button.dataset.command);
+      if (button?.dataset.command) void session.drive(button.dataset.command);
     });
     document.addEventListener('keydown', (event) => {
-      if (event.key === 'Escape') void this.ask(WORDS.stop);
+      if (event.key === 'Escape') void session.drive(WORDS.stop);
     });
+    session.state.refusal.subscribe((refusal) => showMessage(this.message, refusal));
     session.followRobot((description) => this.showRobot(description));
     session.state.gait.subscribe((gait) => this.showActivity(gait));
     effect(() => this.showPredictions());
-  }
-
-  /** Sends a button's line; a refusal is shown beside the buttons until a line is accepted. */
-  async ask(line: string): Promise<void> {
-    const answer = await this.session.ask(line);
-    if (!answer) return;
-    this.message.hidden = answer.ok;
-    this.message.textContent = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
   /** Shows the buttons of another robot. */
@@ -71,7 +64,7 @@ export class Drive {
       this.buttonList.append(button);
       return { command, button, note, loadLabel, moves };
     });
-    this.message.hidden = true;
+    this.session.state.refusal.value = '';
     // A board that stays connected continues its gait.
     this.showActivity(this.session.gait);
   }

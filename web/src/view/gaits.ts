@@ -4,7 +4,7 @@ import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { type GaitEditor, FasterView } from './faster';
-import { make, tableRow } from './make';
+import { make, setAttributes, shape, tableRow } from './make';
 import { setUpNumberInput, putNumber, type Range } from './number';
 import { isShown } from './rooms';
 import { TrialView } from './trial';
@@ -19,7 +19,6 @@ const RING_RADII = [104, 82, 60, 38] as const;
 const BAR_WIDTH = 16;
 /** Length of a leg's bar in a gait of the kind `held`, as a share of the cycle. */
 const HELD_SHARE = 0.25;
-const SVG = 'http://www.w3.org/2000/svg';
 
 /** A number of a gait that has an input. */
 type GaitNumber = 'period' | 'duty' | 'amplitude';
@@ -56,13 +55,11 @@ export class GaitsView {
   private shownToml = '';
 
   constructor(
-    module: WebAssembly.Module,
     private readonly session: Session,
-    ask: (line: string) => Promise<unknown>,
     writer: Writer,
     compare: GaitEditor['compare'],
   ) {
-    this.trial = new TrialView(module, session, ask, writer, { prefix: 'gait', editedGait: () => this.gait, change: (key, value) => this.changeGait({ [key]: value }) });
+    this.trial = new TrialView(session, writer, { prefix: 'gait', editedGait: () => this.gait, change: (key, value) => this.changeGait({ [key]: value }) });
     this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.changeGait(gait), compare });
     this.panel.addEventListener('toggle', () => this.showRobot());
     session.followRobot(() => this.showRobot());
@@ -132,11 +129,8 @@ export class GaitsView {
 
   /** Makes a leg's bar, the bar's handle and the leg's two number inputs. */
   private addLeg(leg: number): void {
-    const bar = this.circle.appendChild(document.createElementNS(SVG, 'path'));
-    const handle = this.circle.appendChild(document.createElementNS(SVG, 'circle'));
-    bar.classList.add('bar', `a${leg + 1}`);
-    handle.classList.add('end', `a${leg + 1}`);
-    handle.setAttribute('r', '6');
+    const bar = this.circle.appendChild(shape('path', { class: `bar a${leg + 1}` }));
+    const handle = this.circle.appendChild(shape('circle', { class: `end a${leg + 1}`, r: 6 }));
     this.bars.push(bar);
     this.handles.push(handle);
     this.addDragHandler(bar, (cycles, firstGait) => this.setLegValue('start', leg, roundTo(wrapPhase((firstGait.start[leg] ?? 0) + cycles), 0.005)));
@@ -193,11 +187,8 @@ export class GaitsView {
       this.bars[leg]?.setAttribute('d', ringSectorPath(radius, start, share));
       // A negative gain: the foot pushes the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
-      const [x, y] = ringPoint(radius, start + share);
-      this.handles[leg]?.setAttribute('cx', String(x));
-      this.handles[leg]?.setAttribute('cy', String(y));
-      const handle = this.handles[leg];
-      if (handle) handle.style.display = gait.held ? 'none' : '';
+      const [cx, cy] = ringPoint(radius, start + share);
+      setAttributes(this.handles[leg], { cx, cy, display: gait.held ? 'none' : 'inline' });
     });
   }
 }

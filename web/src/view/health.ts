@@ -1,6 +1,6 @@
 // The panel of the robot's status, which is requested twice a second while the page is visible.
+import type { Status } from '../robot';
 import type { Session } from '../session';
-import type { Status } from '../status';
 import { element, setText } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
@@ -38,8 +38,8 @@ export class Health {
   private show(status: Status): void {
     if (!isShown(this.panel)) return;
     const texts: Record<string, string> = {
-      fault: status.fault,
-      guard: status.guard,
+      fault: status.fault ?? 'none',
+      guard: status.isHeld ? 'held' : 'clear',
       margin: status.margin === null ? '–' : status.margin.toFixed(3),
       vcc: status.vcc === null ? '–' : `${status.vcc.toFixed(2)} V`,
       'late edges': String(status.lateEdges),

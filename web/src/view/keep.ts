@@ -10,6 +10,7 @@ import { element, setText } from './canvas';
 import { saveFile } from './download';
 import { formatDisplacement } from './drive';
 import type { Floor } from './floor';
+import { shape } from './make';
 import { palette } from './palette';
 import { isShown } from './rooms';
 
@@ -61,12 +62,9 @@ export class RecordView {
   /** Takes the requested picture after the next drawing of the floor; null without a request. */
   private onDrawn: (() => void) | null = null;
 
-  /** `ask` sends a line, and `pace` returns the pace in percent. */
   constructor(
     private readonly session: Session,
     private readonly floor: Floor,
-    private readonly ask: (line: string) => Promise<unknown>,
-    private readonly pace: () => number,
   ) {
     const onClick = (id: string, act: () => void) => element(id).addEventListener('click', act);
     onClick('record', () => this.setRecording(!this.isRecording));
@@ -240,11 +238,7 @@ export class RecordView {
       const pen = new Context(clientWidth, clientHeight);
       const label = this.floor.redraw(pen as unknown as CanvasRenderingContext2D);
       // The package measures text by an inline style, which the page's security policy forbids.
-      const text = pen.getSvg().appendChild(document.createElementNS('http://www.w3.org/2000/svg', 'text'));
-      const { ink } = palette();
-      const attributes = { x: label.x, y: label.y, fill: ink, 'font-size': 12, 'font-family': 'sans-serif' };
-      for (const [name, value] of Object.entries(attributes)) text.setAttribute(name, String(value));
-      text.textContent = label.text;
+      pen.getSvg().append(shape('text', { x: label.x, y: label.y, fill: palette().ink, 'font-size': 12, 'font-family': 'sans-serif' }, label.text));
       saveFile('floor.svg', [pen.getSerializedSvg()], 'image/svg+xml');
     } catch (error) {
       this.say(`The picture cannot be made: ${messageOf(error)}`);
@@ -276,15 +270,15 @@ export class RecordView {
     try {
       const companion = Companion.create(pair.toml, floor, servos, volts);
       if (toml !== this.session.toml) return;
-      await this.ask(WORDS.stop);
+      await session.drive(WORDS.stop);
       session.returnToStart();
       this.floor.clearTracks();
-      companion.send(`${WORDS.speed} ${this.pace()}`);
+      companion.send(`${WORDS.speed} ${session.pace}`);
       companion.step();
       Object.assign(this, { companion, pair, isWaiting: true, pendingTime: 0 });
       this.updateButtons();
       this.floor.fitTwoRobots();
-      await this.ask(pair.gaits[0]);
+      await session.drive(pair.gaits[0]);
     } catch (error) {
       this.say(`The second robot cannot start: ${messageOf(error)}`, pair.output);
     }

@@ -1,10 +1,23 @@
-// Makes elements: paragraphs, buttons, number inputs, lists, tables.
+// Makes elements: paragraphs, buttons, number inputs, lists, tables, shapes of drawings.
 
 type Child = Node | string;
 
 /** Makes an element with its properties and children. */
 export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: Partial<HTMLElementTagNameMap[K]>, ...children: Child[]): HTMLElementTagNameMap[K] {
   const node = Object.assign(document.createElement(tag), properties);
+  node.append(...children);
+  return node;
+}
+
+/** Sets attributes of an element; numbers are rounded to hundredths. */
+export function setAttributes(node: Element | undefined, attributes: Record<string, string | number>): void {
+  for (const [name, value] of Object.entries(attributes)) node?.setAttribute(name, typeof value === 'number' ? String(Number(value.toFixed(2))) : value);
+}
+
+/** Makes an SVG element with its attributes and children. */
+export function shape<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Child[]): SVGElementTagNameMap[K] {
+  const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  setAttributes(node, attributes);
   node.append(...children);
   return node;
 }

@@ -9,20 +9,16 @@ export class Pace {
   /** True while the user moves the slider, and until the line with its value is answered. */
   private isPending = false;
 
-  /** `ask` sends a line and resolves with its answer. */
-  constructor(
-    private readonly session: Session,
-    ask: (line: string) => Promise<unknown>,
-  ) {
+  constructor(session: Session) {
     this.slider.addEventListener('input', () => {
       this.isPending = true;
       this.showText(this.slider.valueAsNumber);
     });
     this.slider.addEventListener('change', () => {
       this.isPending = true;
-      void ask(`${WORDS.speed} ${this.slider.value}`).finally(() => {
+      void session.drive(`${WORDS.speed} ${this.slider.value}`).finally(() => {
         this.isPending = false;
-        this.show(this.session.state.pace.value);
+        this.show(session.pace);
       });
     });
     session.state.pace.subscribe((percent) => this.show(percent));
@@ -33,11 +29,6 @@ export class Pace {
     if (this.isPending) return;
     this.slider.value = String(percent);
     this.showText(percent);
-  }
-
-  /** The slider's pace in percent. */
-  get percent(): number {
-    return this.slider.valueAsNumber;
   }
 
   private showText(percent: number): void {

@@ -2,12 +2,12 @@
 import type { DrawnGait, End, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
+import { setAttributes, shape } from './make';
 import { setUpNumberInput, putNumber, type Range } from './number';
 import { isShown } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
-const SVG = 'http://www.w3.org/2000/svg';
 /** Least distance between two recorded points. */
 const MIN_POINT_DISTANCE_MM = 0.3;
 /** Least number of points of a line; fewer points are a tap. */
@@ -46,11 +46,11 @@ export class PathView {
   private readonly shapeList = element<HTMLSelectElement>('path-shape');
   private readonly nameInput = element<HTMLInputElement>('path-name');
   private readonly trial: TrialView;
-  private readonly allowedArea = this.makePart('path', 'allowed');
-  private readonly baseLine = this.makePart('path', 'base');
-  private readonly drawnLine = this.makePart('path', 'line');
-  private readonly smoothedLine = this.makePart('path', 'rounded');
-  private readonly neutralDot = this.makePart('circle', 'neutral');
+  private readonly allowedArea = this.plane.appendChild(shape('path', { class: 'allowed' }));
+  private readonly baseLine = this.plane.appendChild(shape('path', { class: 'base' }));
+  private readonly drawnLine = this.plane.appendChild(shape('path', { class: 'line' }));
+  private readonly smoothedLine = this.plane.appendChild(shape('path', { class: 'rounded' }));
+  private readonly neutralDot = this.plane.appendChild(shape('circle', { class: 'neutral', r: 1.5 }));
   /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
   /** The area that the end point can reach; null until the panel is opened, or if there is none. */
@@ -59,13 +59,11 @@ export class PathView {
   private shownToml = '';
 
   constructor(
-    module: WebAssembly.Module,
     private readonly session: Session,
-    ask: (line: string) => Promise<unknown>,
     writer: Writer,
   ) {
     const gaitToTry = () => (this.gesture.points.length === 0 ? null : this.gesture);
-    this.trial = new TrialView(module, session, ask, writer, { prefix: 'path', editedGait: gaitToTry, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
+    this.trial = new TrialView(session, writer, { prefix: 'path', editedGait: gaitToTry, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
     this.panel.addEventListener('toggle', () => this.showRobot());
     this.endList.addEventListener('change', () => {
       this.gesture = { ...this.gesture, end: this.endList.value as End };
@@ -116,13 +114,6 @@ export class PathView {
     this.trial.predict();
   }
 
-  /** Makes an element of the picture with the class `name`. */
-  private makePart<K extends 'path' | 'circle'>(tag: K, name: string): SVGElementTagNameMap[K] {
-    const node = this.plane.appendChild(document.createElementNS(SVG, tag));
-    node.classList.add(name);
-    return node;
-  }
-
   /**
    * Converts a point from the plane to the picture, or back. Outward is up in the picture for the head and down for the
    * tail.
@@ -153,9 +144,7 @@ export class PathView {
     this.allowedArea.setAttribute('d', cells.join(' '));
     this.baseLine.setAttribute('d', this.pathText(shafts, ''));
     const [x, y] = this.toPicture(neutral);
-    this.neutralDot.setAttribute('cx', String(x));
-    this.neutralDot.setAttribute('cy', String(y));
-    this.neutralDot.setAttribute('r', '1.5');
+    setAttributes(this.neutralDot, { cx: x, cy: y });
     const farY = from[1] + rows * step;
     const [left, width] = [Math.min(from[0], shafts[0][0]) - MARGIN_MM, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * MARGIN_MM];
     const height = farY + 2 * MARGIN_MM;

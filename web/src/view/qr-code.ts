@@ -1,19 +1,14 @@
 // Draws a text as a QR code, for a phone's camera.
 import { encode } from 'uqr';
 
+import { shape } from './make';
+
 /** Width of the empty border in modules (ISO/IEC 18004, 9.1). */
 const BORDER_MODULES = 4;
 
 /** Returns a text as a QR code. Throws if the text is too long for one. */
 export function qrCode(text: string): SVGSVGElement {
   const { size, data } = encode(text, { ecc: 'L', border: BORDER_MODULES });
-  const namespace = 'http://www.w3.org/2000/svg';
-  const svg = document.createElementNS(namespace, 'svg');
-  svg.setAttribute('viewBox', `0 0 ${size} ${size}`);
-  svg.setAttribute('role', 'img');
-  svg.setAttribute('aria-label', 'QR code of the link to this robot');
-  const darkModules = document.createElementNS(namespace, 'path');
-  darkModules.setAttribute('d', data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join(''));
-  svg.append(darkModules);
-  return svg;
+  const darkModules = data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join('');
+  return shape('svg', { viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': 'QR code of the link to this robot' }, shape('path', { d: darkModules }));
 }

@@ -6,7 +6,7 @@ import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { element } from './canvas';
 import { reveal } from './rooms';
-import { NO_BOARD, type Writer } from './writer';
+import type { Writer } from './writer';
 
 /** Largest number of robots that undo can restore. */
 const MAX_UNDO_STEPS = 50;
@@ -130,9 +130,7 @@ export class RobotText {
     const session = this.session;
     if (this.textBox.value !== session.toml) await this.loadAndShow(this.textBox.value);
     if (this.textBox.value !== session.toml) return;
-    const message = element('robot-said');
-    if (!session.isReal) message.textContent = NO_BOARD;
-    else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('robot-progress') });
+    await this.writer.writeRobot({ message: element('robot-said'), progress: element('robot-progress') });
   }
 
   /** Undoes the last change: restores the previous robot, or the current one if the shown text is refused. */

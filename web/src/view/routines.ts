@@ -1,15 +1,14 @@
 // The panel of routines: their steps, as in the text of robot.toml, and a recorder that makes a routine of a drive.
 import { follow } from '../follow';
-import { LatestQuestion } from '../latest';
 import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
-import { robotHelper } from '../robot-helper';
+import { robotQuestion } from '../robot-helper';
 import { Recorder } from '../routines/recorder';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
 import type { RobotText } from './robot-text';
-import { NO_BOARD, type Writer } from './writer';
+import type { Writer } from './writer';
 
 /** The first step of a new routine. */
 const FIRST_STEP = 'stand 1 s';
@@ -40,17 +39,13 @@ export class RoutinesView {
   private recordedSteps: string[] = [];
   /** The index of the dragged step, and its new index if it is dropped now; null without a drag. */
   private drag: { from: number; to: number } | null = null;
-  /** Asks for the predicted path; null until it is needed. */
-  private pathQuestion: LatestQuestion<OnFloor & { routine: string }, RoundPath | null> | null = null;
+  /** Asks for the predicted path. */
+  private readonly pathQuestion = robotQuestion((robot, question: OnFloor & { routine: string }) => robot.round(question), (path) => this.drawPath(path));
 
-  /** `pace` returns the pace in percent, and `ask` sends a line. */
   constructor(
-    private readonly module: WebAssembly.Module,
     private readonly session: Session,
     private readonly text: RobotText,
-    private readonly pace: () => number,
-    private readonly ask: (line: string) => Promise<void>,
-    private readonly writer: Writer,
+    writer: Writer,
   ) {
     const onClick = (id: string, act: () => void) => element(`routine-${id}`).addEventListener('click', act);
     this.panel.addEventListener('toggle', () => this.show());
@@ -61,7 +56,7 @@ export class RoutinesView {
     onClick('add', () => void this.addStep());
     onClick('undo', () => void this.text.undoLast());
     onClick('start', () => void this.startRoutine());
-    onClick('write', () => void this.writeRobot());
+    onClick('write', () => void writer.writeRobot({ message: element('routine-said'), progress: element('routine-progress') }));
     const { state } = session;
     session.followRobot(() => this.recorder && this.toggleRecording());
     state.gait.subscribe((activity) => {
@@ -92,13 +87,7 @@ export class RoutinesView {
     const { chosenRoutine } = this;
     if (!chosenRoutine) return this.drawPath(null);
     const { floor, servos } = this.session;
-    this.pathQuestion ??= this.createPathQuestion();
     this.pathQuestion.ask({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
-  }
-
-  private createPathQuestion(): NonNullable<typeof this.pathQuestion> {
-    const helper = robotHelper(this.module);
-    return new LatestQuestion((question) => helper.ask((robot) => robot.round(question)), (path) => this.drawPath(path));
   }
 
   private say(text: string): void {
@@ -114,9 +103,9 @@ export class RoutinesView {
 
   /** Starts a recording, or ends it and offers to keep its steps. */
   private toggleRecording(): void {
-    const { description, gait, clock } = this.session;
+    const { description, gait, pace, clock } = this.session;
     const steps = this.recorder?.steps(clock) ?? null;
-    this.recorder = steps ? null : new Recorder(description.gaits, gait, this.pace(), clock);
+    this.recorder = steps ? null : new Recorder(description.gaits, gait, pace, clock);
     const button = element('routine-record');
     button.setAttribute('aria-pressed', String(!steps));
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
@@ -178,13 +167,7 @@ export class RoutinesView {
     const session = this.session;
     // A simulated UNO restarts after each change of the robot.
     if (!session.isFirmwareAnswering) await session.waitForBanner();
-    await this.ask(this.routineList.value.replaceAll('-', ' '));
-  }
-
-  private async writeRobot(): Promise<void> {
-    const message = element('routine-said');
-    if (!this.session.isReal) this.say(NO_BOARD);
-    else await this.writer.write('robot', { message, progress: element<HTMLProgressElement>('routine-progress') });
+    await session.drive(this.routineList.value.replaceAll('-', ' '));
   }
 
   private inputAt(index: number): HTMLInputElement | null {

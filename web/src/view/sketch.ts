@@ -1,21 +1,20 @@
 // A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused while
 // the user drags.
-import { LatestQuestion } from '../latest';
 import type { Edits, Length, Scene, Point } from '../robot';
-import { robotHelper } from '../robot-helper';
+import { robotQuestion } from '../robot-helper';
 import type { RobotFunctions } from '../robot-worker';
 import type { Session } from '../session';
 import { bars, type Joint, joints } from '../sketch/joints';
 import { element } from './canvas';
 import type { FitView } from './fit';
 import { LengthSlider } from './length-slider';
+import { setAttributes, shape } from './make';
 import { isShown } from './rooms';
 import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 
 type Question = Parameters<RobotFunctions['lengths']>[0];
 type Answer = ReturnType<RobotFunctions['lengths']>;
 
-const SVG = 'http://www.w3.org/2000/svg';
 /** Movement of the pointer, in CSS pixels, beyond which a press is a drag. */
 const DRAG_THRESHOLD_PX = 3;
 /** Margin around the robot in the drawing. */
@@ -26,10 +25,10 @@ export class Sketch {
   private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
   private readonly message = element('sketch-said');
   private readonly symmetryBox = element<HTMLInputElement>('alike');
-  private readonly barGroup = this.picture.appendChild(document.createElementNS(SVG, 'g'));
-  private readonly jointGroup = this.picture.appendChild(document.createElementNS(SVG, 'g'));
-  /** Asks for a drawing of the robot with other lengths; null until the panel is opened. */
-  private robotQuestion: LatestQuestion<Question, Answer> | null = null;
+  private readonly barGroup = this.picture.appendChild(shape('g', {}));
+  private readonly jointGroup = this.picture.appendChild(shape('g', {}));
+  /** Asks for a drawing of the robot with other lengths. */
+  private readonly robotQuestion = robotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
   private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.askRobot());
   /** The robot.toml that is drawn; empty before the first one. */
   private shownToml = '';
@@ -39,7 +38,6 @@ export class Sketch {
   private isDragEnding = false;
 
   constructor(
-    private readonly module: WebAssembly.Module,
     private readonly session: Session,
     private readonly fit: FitView,
   ) {
@@ -55,29 +53,23 @@ export class Sketch {
     this.shownToml = toml;
     this.draggedJoint = null;
     this.slider.showRobot(description.lengths);
-    this.robotQuestion ??= this.createRobotQuestion();
     this.askRobot();
-  }
-
-  private createRobotQuestion(): NonNullable<typeof this.robotQuestion> {
-    const helper = robotHelper(this.module);
-    return new LatestQuestion((question) => helper.ask((robot) => robot.lengths(question)), (answer) => this.handleAnswer(answer));
   }
 
   /** Requests a drawing of the session's robot, and the range of the slider's length. */
   private askRobot(): void {
-    this.robotQuestion?.ask({ toml: this.shownToml, edits: [], isLast: false, keys: this.slider.keys });
+    this.robotQuestion.ask({ toml: this.shownToml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
   /** Tries the lengths of a drag; `isLast` is true at the drag's end. */
   private tryOut(edits: Edits, isLast: boolean): void {
     this.isDragEnding ||= isLast;
-    this.robotQuestion?.ask({ toml: this.shownToml, edits, isLast, keys: [] });
+    this.robotQuestion.ask({ toml: this.shownToml, edits, isLast, keys: [] });
   }
 
   /** Searches for valid lengths in place of refused ones, and offers them. */
   offerValidLengths(edits: Edits): void {
-    this.robotQuestion?.ask({ toml: this.shownToml, edits, isLast: true, keys: [] });
+    this.robotQuestion.ask({ toml: this.shownToml, edits, isLast: true, keys: [] });
   }
 
   private lengthsByKey(): Map<string, Length> {
@@ -128,13 +120,10 @@ export class Sketch {
     const lengths = this.lengthsByKey();
     this.barGroup.replaceChildren(
       ...bars(scene).map(({ key, from, to }) => {
-        const line = document.createElementNS(SVG, 'line');
         const [[x1, y1], [x2, y2]] = [toPicture(from), toPicture(to)];
-        for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) line.setAttribute(name, String(value));
-        line.dataset.key = key;
         const length = lengths.get(key);
-        const title = line.appendChild(document.createElementNS(SVG, 'title'));
-        title.textContent = length ? `${length.label} (${key.replace('links.', '')}): ${length.value} ${length.unit}` : key;
+        const title = length ? `${length.label} (${key.replace('links.', '')}): ${length.value} ${length.unit}` : key;
+        const line = shape('line', { x1, y1, x2, y2, 'data-key': key }, shape('title', {}, title));
         line.addEventListener('click', () => this.selectInput(key));
         return line;
       }),
@@ -147,29 +136,20 @@ export class Sketch {
     }
     if (this.draggedJoint) {
       // Joints are drawn where the lengths put them, so the dragged joint may be away from the pointer.
-      joints(scene, () => 0).forEach(({ at: point }, n) => this.placeMark(this.jointGroup.children[n], toPicture(point)));
+      joints(scene, () => 0).forEach(({ at: [x, y] }, n) => setAttributes(this.jointGroup.children[n], { cx: x, cy: -y }));
       return;
     }
     const lengthOf = (key: string) => lengths.get(key)?.value ?? 0;
     this.jointGroup.replaceChildren(...joints(scene, lengthOf).map((joint) => this.makeJoint(joint, toPicture(joint.at))));
   }
 
-  private placeMark(mark: Element | undefined, [x, y]: Point): void {
-    mark?.setAttribute('cx', String(x));
-    mark?.setAttribute('cy', String(y));
-  }
-
-  private makeJoint(joint: Joint, position: Point): SVGCircleElement {
+  private makeJoint(joint: Joint, [cx, cy]: Point): SVGCircleElement {
     let pressPoint: [number, number] | null = null;
     const isDragged = ({ clientX, clientY }: PointerEvent) => {
       if (pressPoint && Math.hypot(clientX - pressPoint[0], clientY - pressPoint[1]) > DRAG_THRESHOLD_PX) pressPoint = null;
       return this.draggedJoint === joint && pressPoint === null;
     };
-    const mark = document.createElementNS(SVG, 'circle');
-    mark.setAttribute('r', '3.6');
-    mark.dataset.joint = joint.name;
-    this.placeMark(mark, position);
-    mark.appendChild(document.createElementNS(SVG, 'title')).textContent = joint.name;
+    const mark = shape('circle', { cx, cy, r: 3.6, 'data-joint': joint.name }, shape('title', {}, joint.name));
     mark.addEventListener('pointerdown', (event) => {
       if (this.isDragEnding) return;
       mark.setPointerCapture(event.pointerId);

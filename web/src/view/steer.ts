@@ -1,7 +1,8 @@
 // Steering by hand: keys, a stick on the screen or a gamepad give a direction, and the robot walks the gait for this
 // direction as long as the control is held.
-import type { PredictedGait } from '../predictor';
+import type { PredictedGait, Predictor } from '../predictor';
 import type { Displacement } from '../robot';
+import type { Session } from '../session';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
@@ -91,15 +92,11 @@ export class Steering {
   /** The pace to restore, in percent, while a stick asks for half of it; null otherwise. */
   private fullPace: number | null = null;
 
-  /**
-   * `choices` returns the gaits with a known prediction, `send` sends a line, `isDrivingForbidden` returns true while
-   * the robot must not be driven, and `pace` returns the pace in percent.
-   */
+  /** `isDrivingForbidden` returns true while the robot must not be driven. */
   constructor(
-    private readonly choices: () => PredictedGait[],
-    private readonly send: (line: string) => void,
+    private readonly session: Session,
+    private readonly predictor: Predictor,
     private readonly isDrivingForbidden: () => boolean,
-    private readonly pace: () => number,
   ) {
     // The keys are handled in the capture phase, before a slider or a view handles an arrow key.
     document.addEventListener('keydown', (event) => this.handleKey(event, true), true);
@@ -136,7 +133,7 @@ export class Steering {
       });
     }
     if (isButtonPressed && !this.isButtonPressed) {
-      this.send(WORDS.stop);
+      void this.session.drive(WORDS.stop);
       this.release(false);
     }
     this.isButtonPressed = isButtonPressed;
@@ -199,17 +196,17 @@ export class Steering {
     const isIdle = this.isDrivingForbidden() || deflection < DEAD_ZONE;
     const isHalfPace = !isIdle && deflection < (this.fullPace === null ? HALF_PACE_DEFLECTION : FULL_PACE_DEFLECTION);
     if (isHalfPace && this.fullPace === null) {
-      this.fullPace = this.pace();
-      this.send(`${WORDS.speed} ${Math.max(MIN_PACE_PERCENT, Math.round(this.fullPace / 2))}`);
+      this.fullPace = this.session.pace;
+      void this.session.drive(`${WORDS.speed} ${Math.max(MIN_PACE_PERCENT, Math.round(this.fullPace / 2))}`);
     }
-    const gait = isIdle ? null : gaitFor(direction, this.choices());
+    const gait = isIdle ? null : gaitFor(direction, this.predictor.gaits);
     // If no gait has this direction, the current one goes on.
     if (gait !== this.sentGait && (isIdle || gait !== null)) {
       this.sentGait = gait;
-      this.send(gait ?? WORDS.stop);
+      void this.session.drive(gait ?? WORDS.stop);
     }
     if (!isHalfPace && this.fullPace !== null) {
-      this.send(`${WORDS.speed} ${this.fullPace}`);
+      void this.session.drive(`${WORDS.speed} ${this.fullPace}`);
       this.fullPace = null;
     }
   }

@@ -1,13 +1,12 @@
 // The trial of an edited gait by a simulation: its figures, the nearest valid values if it is refused, and the buttons
 // that use the gait.
 import { takeGait, tryGait } from '../gaits/try';
-import { LatestQuestion } from '../latest';
 import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
-import { robotHelper } from '../robot-helper';
+import { robotQuestion } from '../robot-helper';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { button } from './make';
-import { NO_BOARD, type Writer } from './writer';
+import type { Writer } from './writer';
 
 /** The part of a gait editor that its trial uses. */
 export interface GaitEditor {
@@ -43,14 +42,12 @@ const OFFER_LABELS: Record<Alternative, (value: number) => string> = {
 };
 
 export class TrialView {
-  private trialQuestion: LatestQuestion<OnFloor & { gait: EditedGait }, Trial | NoTrial | null> | null = null;
+  private readonly trialQuestion = robotQuestion<OnFloor & { gait: EditedGait }, Trial | NoTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
   /** The last answer; null if the gait was refused. */
   private trial: Trial | null = null;
 
   constructor(
-    private readonly module: WebAssembly.Module,
     private readonly session: Session,
-    private readonly ask: (line: string) => Promise<unknown>,
     private readonly writer: Writer,
     private readonly editor: GaitEditor,
   ) {
@@ -64,13 +61,7 @@ export class TrialView {
     const { toml, floor, servos } = this.session;
     const gait = this.editor.editedGait();
     if (!gait || toml === '') return;
-    this.trialQuestion ??= this.createTrialQuestion();
     this.trialQuestion.ask({ toml, floor, servos, gait });
-  }
-
-  private createTrialQuestion(): NonNullable<typeof this.trialQuestion> {
-    const helper = robotHelper(this.module);
-    return new LatestQuestion((question) => helper.ask<Trial | NoTrial | null>((robot) => robot.trial(question)), (trial) => this.handleAnswer(trial));
   }
 
   /** Shows a message beside the editor's buttons. */
@@ -103,19 +94,18 @@ export class TrialView {
     const gait = this.editor.editedGait();
     if (!gait) return;
     this.say('The robot restarts with this gait…');
-    const refusal = await tryGait(this.session, gait, this.ask);
+    const refusal = await tryGait(this.session, gait);
     this.say(refusal?.refused ?? `It does ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
   }
 
   private async writeToBoard(): Promise<void> {
     const gait = this.editor.editedGait();
     if (!gait) return;
-    const session = this.session;
-    if (!session.isReal) return this.say(NO_BOARD);
-    const refusal = await takeGait(session, gait);
+    const { session } = this;
+    const refusal = session.isReal ? await takeGait(session, gait) : null;
     if (refusal) return this.say(refusal.refused);
     const message = this.element('said');
-    if (!(await this.writer.write('robot', { message, progress: this.element<HTMLProgressElement>('progress') }))) return;
+    if (!(await this.writer.writeRobot({ message, progress: this.element<HTMLProgressElement>('progress') }))) return;
     this.say(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
   }
 

@@ -15,7 +15,7 @@ export interface Display {
 export type WriteContent = 'robot' | 'all' | Uint8Array;
 
 /** The message when no board is connected. */
-export const NO_BOARD = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
+const NO_BOARD = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
 
 /** The message of each step, and the percentages of the progress bar at which the step begins and ends. */
 const PROGRESS_STEPS = {
@@ -30,6 +30,13 @@ export class Writer {
   readonly isBusy = signal(false);
 
   constructor(private readonly session: Session) {}
+
+  /** Writes the page's robot alone to a real board; returns true if it is there and answers. */
+  async writeRobot(display: Display): Promise<boolean> {
+    if (this.session.isReal) return this.write('robot', display);
+    display.message.textContent = NO_BOARD;
+    return false;
+  }
 
   /** Writes and verifies, then waits for the board's banner; returns true if all of this succeeded. */
   async write(content: WriteContent, { progress, message }: Display): Promise<boolean> {

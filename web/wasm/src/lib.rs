@@ -27,6 +27,7 @@ mod place;
 mod prediction;
 mod reach_area;
 mod refused;
+mod reports;
 mod round;
 mod scene;
 mod trial;

@@ -7,9 +7,9 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
 use lizard_core::numbers::section::SPACE_BYTES;
+use lizard_robot::RobotIdentity;
 use serde::Serialize;
 
-use crate::drive::console::info;
 use crate::drive::flash::file;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
@@ -39,7 +39,7 @@ struct ImageFile {
     file: String,
     /// The version of the firmware; null in a file with only the robot.
     firmware: Option<&'static str>,
-    robot: info::RobotIdentity,
+    robot: RobotIdentity,
     /// The size of the robot's section.
     robot_bytes: usize,
     /// The bytes of flash that are reserved for it.
@@ -69,7 +69,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let image_file = ImageFile {
         file: path.display().to_string(),
         firmware: (!args.only_robot).then_some(env!("CARGO_PKG_VERSION")),
-        robot: info::RobotIdentity::of(robot.firmware()),
+        robot: RobotIdentity::of(robot.firmware()),
         robot_bytes: robot.section().len(),
         robot_space: SPACE_BYTES,
     };

@@ -1,6 +1,7 @@
 // The drawing of the robot for the first connection, from above with forward upward: each servo, the direction of its
 // crank, and an arrow for a turn. The body is drawn shorter than it is, so that the cranks are large.
 import type { Description, Four, Scene, Point } from '../../robot';
+import { shape } from '../make';
 
 /** The places of the servos A1 to A4 in the robot. */
 export const SERVO_PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
@@ -18,25 +19,14 @@ export interface SelectedServo {
 const HALF_LENGTH_MM = 34;
 /** Length of the arrow's arc: more than the servo turns, so that it is seen clearly. */
 const ARC_DEG = 55;
-const NAMESPACE = 'http://www.w3.org/2000/svg';
 const RADIANS_PER_DEG = Math.PI / 180;
-
-/** Makes an SVG element; numbers in its attributes are rounded to hundredths. */
-function makeShape(tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
-  const node = document.createElementNS(NAMESPACE, tag);
-  for (const [key, value] of Object.entries(attributes)) {
-    node.setAttribute(key, typeof value === 'number' ? value.toFixed(2) : value);
-  }
-  node.textContent = text;
-  return node;
-}
 
 /** Returns the point at a distance in mm and an angle from another point, in the drawing's frame with y downward. */
 function pointAt([x, y]: Point, length: number, degrees: number): Point {
   return [x + length * Math.cos(degrees * RADIANS_PER_DEG), y - length * Math.sin(degrees * RADIANS_PER_DEG)];
 }
 
-const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => makeShape('line', { class: className, x1, y1, x2, y2 });
+const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => shape('line', { class: className, x1, y1, x2, y2 });
 
 /** Makes an arrow about a shaft. It begins at the angle `begin` in deg, and has the direction of the turn `turn`. */
 function makeArrow(shaft: Point, radius: number, begin: number, turn: number): SVGElement[] {
@@ -45,9 +35,9 @@ function makeArrow(shaft: Point, radius: number, begin: number, turn: number): S
   const [x1, y1] = pointAt(shaft, radius, begin);
   const [x2, y2] = pointAt(shaft, radius, end);
   // SVG's sweep flag is 0 for counter-clockwise, since y is downward.
-  const arc = makeShape('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turn > 0 ? 0 : 1} ${x2} ${y2}` });
+  const arc = shape('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turn > 0 ? 0 : 1} ${x2} ${y2}` });
   const headPoints = [pointAt(shaft, radius + 6, end - direction * 9), [x2, y2], pointAt(shaft, radius - 6, end - direction * 9)];
-  return [arc, makeShape('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
+  return [arc, shape('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
 }
 
 /** Makes the drawing of the robot; `selected` is the servo to highlight, null for none. */
@@ -61,37 +51,37 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
   const viewHalfHeight = Math.max(HALF_LENGTH_MM + crankLength, halfLength) + 8;
   const angles = servos.map(({ neutral }, n) => `${servoName(n)}: ${neutral.toFixed(1)}°`).join('; ');
   const arrowText = selected?.turnDeg ? ` An arrow shows A${selected.servo + 1} turning ${selected.turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
-  const svg = makeShape('svg', {
+  const svg = shape('svg', {
     class: 'robot-drawing',
     viewBox: `${-viewHalfWidth} ${-viewHalfHeight} ${2 * viewHalfWidth} ${2 * viewHalfHeight}`,
     role: 'img',
     'aria-label': `The robot from above, ahead is up. Where the cranks point, from its right, counter-clockwise: ${angles}.${arrowText}`,
   });
   svg.append(
-    makeShape('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
+    shape('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
     makeLine('ahead', [0, 16], [0, -16]),
-    makeShape('polyline', { class: 'ahead', points: '-6,-8 0,-16 6,-8' }),
-    makeShape('text', { x: 0, y: 28 }, 'ahead'),
+    shape('polyline', { class: 'ahead', points: '-6,-8 0,-16 6,-8' }),
+    shape('text', { x: 0, y: 28 }, 'ahead'),
   );
   shaftPoints.forEach((shaft, n) => {
     const { neutral, pin } = servos[n];
     const isSelected = selected?.servo === n;
-    const group = makeShape('g', { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` });
+    const group = shape('g', { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` });
     const tip = pointAt(shaft, crankLength, neutral);
     group.append(makeLine('zero', shaft, pointAt(shaft, crankLength * 0.6, 0)), makeLine('crank', shaft, tip));
     if (isSelected && selected.turnDeg !== null) {
       group.append(makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + selected.turnDeg)), ...makeArrow(shaft, crankLength * 0.75, neutral + Math.sign(selected.turnDeg) * 8, selected.turnDeg));
     }
-    group.append(makeShape('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
+    group.append(shape('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
     // The text is outside the arrow, which may reach as far as the crank.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + crankLength + 6);
     const y = shaft[1] + Math.sign(shaft[1]) * crankLength * 0.4;
     const side = isLeft ? 'left' : 'right';
     group.append(
-      makeShape('text', { class: `name ${side}`, x, y: y - 5 }, `A${n + 1}`),
-      makeShape('text', { class: side, x, y: y + 7 }, `${neutral.toFixed(1)}°`),
-      makeShape('text', { class: side, x, y: y + 19 }, `pin D${pin}`),
+      shape('text', { class: `name ${side}`, x, y: y - 5 }, `A${n + 1}`),
+      shape('text', { class: side, x, y: y + 7 }, `${neutral.toFixed(1)}°`),
+      shape('text', { class: side, x, y: y + 19 }, `pin D${pin}`),
     );
     svg.append(group);
   });

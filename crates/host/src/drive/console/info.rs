@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use lizard_calibrate::{BadReply, read_settings};
 use lizard_robot::servo::SERVO_NAMES;
-use lizard_robot::{Calibration, ServoSettings, Status};
+use lizard_robot::{Banner, Calibration, RobotIdentity, ServoSettings, Status};
 use pollster::block_on;
 use serde::Serialize;
 
@@ -66,23 +66,6 @@ impl From<Calibration> for CalibrationInfo {
     }
 }
 
-/// The name and the hash by which a board identifies its robot.
-#[derive(Debug, PartialEq, Serialize)]
-pub(in crate::drive) struct RobotIdentity {
-    pub(in crate::drive) name: String,
-    /// The hash of the robot's numbers, eight hexadecimal digits.
-    pub(in crate::drive) hash: String,
-}
-
-impl RobotIdentity {
-    /// Returns the identity that a board will report for a robot.
-    pub(in crate::drive) fn of(robot: &lizard_core::numbers::robot::Robot) -> Self {
-        let name = robot.robot_name().map(char::from).collect();
-        let hash = format!("{:08x}", robot.hash());
-        Self { name, hash }
-    }
-}
-
 /// Asks a board about itself and prints its answers.
 ///
 /// # Errors
@@ -107,7 +90,9 @@ impl BoardInfo {
             Err(error) if error.is_refusal() => None,
             Err(error) => return Err(error.into()),
         };
-        let (firmware, robot) = banner.map_or((None, None), parse_banner);
+        let (firmware, robot) = banner
+            .and_then(Banner::parse)
+            .map_or((None, None), |banner| (Some(banner.version), banner.robot));
         Ok(Self {
             port,
             firmware,
@@ -193,20 +178,6 @@ fn ask_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> 
     })
 }
 
-/// Returns the version and the robot that a firmware's banner names.
-pub(in crate::drive) fn parse_banner(line: &str) -> (Option<String>, Option<RobotIdentity>) {
-    let line = line.split(',').next().unwrap_or(line);
-    let words: Vec<&str> = line.split(' ').collect();
-    match words[..] {
-        ["#", "lizard", version, "robot", name, hash] => {
-            let [name, hash] = [name, hash].map(str::to_owned);
-            (Some(version.to_owned()), Some(RobotIdentity { name, hash }))
-        }
-        ["#", "lizard", version, ..] => (Some(version.to_owned()), None),
-        _ => (None, None),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::double::{PAPER_TOML, calibration_of, connect_paper_robot};
@@ -235,27 +206,5 @@ mod tests {
         }
         let after = calibration_of(&mut link);
         assert!(after.is_equivalent_to(&before), "nothing was changed");
-    }
-
-    #[test]
-    fn a_banner_is_parsed_with_a_robot_and_without_one() {
-        let robot = |name: &str, hash: &str| {
-            let [name, hash] = [name, hash].map(str::to_owned);
-            Some(RobotIdentity { name, hash })
-        };
-        let version = Some("0.2.0".to_owned());
-        for (line, expected) in [
-            (
-                "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands",
-                (version.clone(), robot("paper", "1a2b3c4d")),
-            ),
-            (
-                "# lizard 0.2.0 without a robot, send help for the commands",
-                (version, None),
-            ),
-            ("hello", (None, None)),
-        ] {
-            assert_eq!(parse_banner(line), expected);
-        }
     }
 }

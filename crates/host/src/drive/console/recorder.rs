@@ -5,13 +5,13 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 use std::time::Instant;
 
+use lizard_robot::parse_pose_report;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 #[cfg(feature = "simulator")]
 use crate::shared::plain::escape_controls;
 use crate::shared::{files, json};
-use lizard_robot::parse_angles;
 
 /// The value of `format` in the first line. The number increases when a key changes its meaning.
 pub const FORMAT: &str = "lizard record 1";
@@ -116,7 +116,7 @@ impl<W: Write> Recorder<W> {
 impl Event {
     /// Returns the event of a line that begins with `#`: a pose or a note.
     pub fn from_note(line: &str) -> Self {
-        match parse_pose(line) {
+        match parse_pose_report(line) {
             Some((frame, angles)) => Self::Pose { frame, angles },
             None => Self::Note(line.to_owned()),
         }
@@ -143,12 +143,6 @@ impl Event {
             Self::Pose { .. } | Self::Gone => self,
         }
     }
-}
-
-/// Parses a line `# t=<frame> pose=<angles>`; `None` for any other line.
-fn parse_pose(line: &str) -> Option<(u64, [f64; 4])> {
-    let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
-    Some((frame.parse().ok()?, parse_angles(pose)?))
 }
 
 #[cfg(test)]

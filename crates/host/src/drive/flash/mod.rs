@@ -10,6 +10,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use lizard_robot::{Banner, RobotIdentity};
 use lizard_upload::{
     Event, Image, Loader, Model, PAGE_BYTES, PageCounts, Step, Target, UploadError, upload,
 };
@@ -17,7 +18,6 @@ use pollster::block_on;
 use serde::Serialize;
 
 use crate::drive::console::find::{self, FindError, UsbPort};
-use crate::drive::console::info;
 use crate::drive::console::link::{self, Link};
 use crate::drive::console::port::BAUD;
 use crate::shared::json;
@@ -63,7 +63,7 @@ struct FlashReport {
     /// The firmware's version; null if the firmware answered without its first line.
     firmware: Option<String>,
     /// Null if the board has no robot.
-    robot: Option<info::RobotIdentity>,
+    robot: Option<RobotIdentity>,
 }
 
 /// Runs `lizard flash`.
@@ -99,7 +99,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
-    let (firmware, robot) = info::parse_banner(&banner);
+    let (firmware, robot) =
+        Banner::parse(&banner).map_or((None, None), |banner| (Some(banner.version), banner.robot));
     let report = FlashReport {
         port,
         bytes_written: page_counts.written * PAGE_BYTES,

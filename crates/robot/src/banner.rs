@@ -1,0 +1,93 @@
+//! The firmware's banner, its first line after a reset.
+
+/// The name and the hash by which a board identifies its robot.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct RobotIdentity {
+    /// The name in its robot.toml.
+    pub name: String,
+    /// The hash of the robot's numbers, eight hexadecimal digits.
+    pub hash: String,
+}
+
+impl RobotIdentity {
+    /// Returns the identity that a board will report for a robot.
+    #[must_use]
+    pub fn of(robot: &lizard_core::numbers::robot::Robot) -> Self {
+        let name = robot.robot_name().map(char::from).collect();
+        let hash = format!("{:08x}", robot.hash());
+        Self { name, hash }
+    }
+}
+
+/// The firmware and the robot that a board has.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Banner {
+    /// The firmware's version.
+    pub version: String,
+    /// The robot in the flash; `None` if there is none or it is damaged.
+    pub robot: Option<RobotIdentity>,
+}
+
+impl Banner {
+    /// Reads a banner; `None` for any other line, also for one that was cut off or that an old firmware, which had its
+    /// robot compiled in, has sent.
+    #[must_use]
+    pub fn parse(line: &str) -> Option<Self> {
+        let (line, _) = line.strip_prefix("# lizard ")?.split_once(',')?;
+        let words: Vec<&str> = line.split(' ').collect();
+        let robot = match words[1..] {
+            ["robot", name, hash] => Some(RobotIdentity {
+                name: name.to_owned(),
+                hash: hash.to_owned(),
+            }),
+            ["without", "a", "robot"] => None,
+            _ => return None,
+        };
+        Some(Self {
+            version: words[0].to_owned(),
+            robot,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_banner_names_the_firmware_and_its_robot_if_there_is_one() {
+        let paper = RobotIdentity {
+            name: "paper".to_owned(),
+            hash: "1a2b3c4d".to_owned(),
+        };
+        for (line, robot) in [
+            (
+                "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands",
+                Some(paper),
+            ),
+            (
+                "# lizard 0.2.0 without a robot, send help for the commands",
+                None,
+            ),
+        ] {
+            let banner = Banner::parse(line).expect("it is a banner");
+            assert_eq!((banner.version.as_str(), banner.robot), ("0.2.0", robot));
+        }
+    }
+
+    #[test]
+    fn other_lines_and_banners_that_were_cut_off_are_no_banners() {
+        for line in [
+            "hello",
+            "# lizard ",
+            "# lizard 0.2.0",
+            "# lizard 0.1.0, send help for the commands",
+            "# lizard 0.2.0 robot paper 1a2b",
+            "# lizard 0.2.0 robot paper, send help for the commands",
+        ] {
+            assert_eq!(Banner::parse(line), None, "{line}");
+        }
+    }
+}
