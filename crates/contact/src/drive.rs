@@ -58,7 +58,7 @@ impl Drive {
         }
     }
 
-    /// Limits a lag (deg) to the range between the leg's stops, with the servo at this sweep, deg.
+    /// Limits a lag (deg) to the range between the leg's stops while its servo is at this sweep, deg.
     pub(crate) fn limit_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
         let stops = self
             .lag_energy_of_leg(leg, sweep, 1.0, 1.0)

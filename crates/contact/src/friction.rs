@@ -20,11 +20,11 @@ pub type Point = [f64; 2];
 pub(crate) type Twist = [f64; 3];
 
 /// Smallest width of the smoothing, relative to the size of the slides.
-const MIN_ROUNDING: f64 = 1e-8;
-/// Number of the last stage. Stage 0 smooths over the size of the slides, the last stage over `MIN_ROUNDING` times
-/// that size.
+const MIN_SMOOTHING: f64 = 1e-8;
+/// Index of the last stage. Stage 0 smooths over the size of the slides, the last stage over `MIN_SMOOTHING` times that
+/// size.
 const LAST_STAGE: i32 = 5;
-/// Number of the first stage if an initial guess is given.
+/// Index of the first stage if an initial guess is given.
 const FIRST_STAGE_WITH_GUESS: i32 = 2;
 /// The largest number of Newton steps in a stage; five to eight are usual.
 const MAX_NEWTON_STEPS: usize = 40;
@@ -36,7 +36,7 @@ const MAX_IMBALANCE: f64 = 1e-9;
 const MIN_REDUCTION: f64 = 1e-23;
 
 /// Largest distance that counts as zero, mm.
-const MAX_STILL_DISTANCE: f64 = 1e-12;
+const MAX_ZERO_DISTANCE: f64 = 1e-12;
 
 /// The four pads in a small step.
 #[derive(Clone, Copy)]
@@ -71,8 +71,8 @@ pub(crate) struct Inertia {
 /// The drives of legs that lag behind their servos, or of servos that lag behind their pulses.
 #[derive(Clone, Copy)]
 pub(crate) struct Compliance {
-    /// Derivatives of the pads' positions with respect to their legs' sweeps, mm/rad. A lag moves a pad the opposite
-    /// way.
+    /// Derivatives of the pads' positions with respect to their legs' sweeps, mm/rad. A lag moves a pad in the opposite
+    /// direction.
     pub sweep_derivatives: [Point; 4],
     /// Lags before the step, rad.
     pub previous_lags: [f64; 4],
@@ -85,7 +85,7 @@ pub(crate) struct Compliance {
 pub(crate) struct Displacement {
     /// Movement of the body.
     pub twist: Twist,
-    /// Lags after the step, rad: each is the sum of the lags of leg and servo; 0 without compliance.
+    /// Lags after the step, rad: each is the sum of a leg's and its servo's lag; 0 without compliance.
     pub lags: [f64; 4],
     /// Changes of the lags, rad.
     pub lag_changes: [f64; 4],
@@ -131,7 +131,7 @@ impl Pads {
     /// Finds the displacement of body and legs with the least cost, starting from a guess.
     pub fn minimise_cost_from(&self, guess: Option<&Displacement>) -> Displacement {
         let slide_size = max_component(&self.swings).max(self.max_free_distance());
-        if slide_size < MAX_STILL_DISTANCE {
+        if slide_size < MAX_ZERO_DISTANCE {
             return self.displacement_of([0.0; 3], [0.0; 4]);
         }
         // A turn of one unit moves the farthest pad by about one unit of length.
@@ -157,9 +157,9 @@ impl Pads {
             ),
             None => ([0.0; 3], [0.0; 4], 0),
         };
-        let mut last_solutions = [None, guess.map(|_| (slide_size * MIN_ROUNDING, x, z))];
+        let mut last_solutions = [None, guess.map(|_| (slide_size * MIN_SMOOTHING, x, z))];
         for stage in first_stage..=LAST_STAGE {
-            let eps = slide_size * MIN_ROUNDING.powf(f64::from(stage) / f64::from(LAST_STAGE));
+            let eps = slide_size * MIN_SMOOTHING.powf(f64::from(stage) / f64::from(LAST_STAGE));
             let expand_at = |x, z| self.expand(&units.displacement(self, x, z), eps, &units);
             let mut current = expand_at(x, z);
             // The slide of a pad that holds shrinks in proportion to eps, so the solutions of two
@@ -232,8 +232,8 @@ impl Pads {
         }
     }
 
-    /// Largest distance that a pad may move even if no servo sweeps in this step, mm: a motor may turn its leg, or
-    /// a spring may pull its leg back. A spring overcomes its pad only after a change of pads or springs.
+    /// Largest distance that a pad may move even if no servo sweeps in this step, mm: a motor may turn its leg, or a
+    /// spring may pull its leg back. A spring overcomes its pad only after pads or springs have changed.
     fn max_free_distance(&self) -> f64 {
         let Some(compliance) = &self.compliance else {
             return 0.0;
@@ -412,7 +412,7 @@ impl LagDerivatives {
     }
 }
 
-/// The largest magnitude of a component.
+/// Largest magnitude of all components of the points.
 fn max_component(points: &[Point; 4]) -> f64 {
     let components = points.iter().flatten();
     components.fold(0.0f64, |max, component| max.max(component.abs()))

@@ -87,14 +87,14 @@ impl StrutTriangle {
         }
     }
 
-    /// Lever of the strut's pull while the leg does not lag: the derivative of the strut's length with
-    /// respect to the lag, mm/rad. It is negative if a positive lag makes the strut shorter.
-    pub fn lever(&self) -> f64 {
+    /// Lever arm of the strut's pull while the leg does not lag: the derivative of the strut's length with respect to
+    /// the lag, mm/rad. It is negative if a positive lag makes the strut shorter.
+    pub fn lever_arm(&self) -> f64 {
         (self.base * self.arm * self.sin_cos.0 / self.unlagged_length).copysign(self.angle)
     }
 
-    /// Magnitude of the lever, mm/rad, after a lag (rad) in the direction in which the strut grows.
-    pub fn lever_after(&self, lag: f64) -> f64 {
+    /// Magnitude of the lever arm, mm/rad, after a lag (rad) in the direction in which the strut grows.
+    pub fn lever_arm_after(&self, lag: f64) -> f64 {
         self.growth_and_derivatives(lag).1
     }
 
@@ -110,8 +110,8 @@ impl StrutTriangle {
         }
     }
 
-    /// Growth of the strut's length (mm) after a lag in the direction in which it grows, with the
-    /// first and second derivatives with respect to the lag: the lever (mm/rad) and its slope.
+    /// Growth of the strut's length (mm) after a lag in the direction in which it grows, with the first and second
+    /// derivatives with respect to the lag: the lever arm (mm/rad) and its slope.
     ///
     /// Lags are often as small as a hundred-thousandth of a radian. The difference of two lengths
     /// would then consist mostly of rounding errors, which would mislead Newton's method.
@@ -121,26 +121,27 @@ impl StrutTriangle {
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
         let square_growth = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
         let length = (self.unlagged_length * self.unlagged_length + square_growth).sqrt();
-        let lever = product * (sin * lag_cos + cos * lag_sin) / length;
-        let lever_slope = (product * (cos * lag_cos - sin * lag_sin) - lever * lever) / length;
+        let lever_arm = product * (sin * lag_cos + cos * lag_sin) / length;
+        let lever_arm_slope =
+            (product * (cos * lag_cos - sin * lag_sin) - lever_arm * lever_arm) / length;
         (
             square_growth / (length + self.unlagged_length),
-            lever,
-            lever_slope,
+            lever_arm,
+            lever_arm_slope,
         )
     }
 
     /// Energy of a spring that pulls the strut together with `force` and `rate`, minus
     /// `preload * lag`. The lag is in the direction in which the strut grows.
     fn spring_energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
-        let (growth, lever, lever_slope) = self.growth_and_derivatives(lag);
+        let (growth, lever_arm, lever_arm_slope) = self.growth_and_derivatives(lag);
         let pull = force + rate * growth;
         (
             force * growth - preload * lag + rate * growth * growth / 2.0,
-            pull * lever - preload,
-            // If the lever shrinks faster than the pull grows, the curvature is negative. Newton's method needs a
+            pull * lever_arm - preload,
+            // If the lever arm shrinks faster than the pull grows, the curvature is negative. Newton's method needs a
             // convex energy, so the curvature is then set to zero.
-            (rate * lever * lever + pull * lever_slope).max(0.0),
+            (rate * lever_arm * lever_arm + pull * lever_arm_slope).max(0.0),
         )
     }
 }
@@ -170,7 +171,7 @@ impl Resistance {
                 end_lag,
             } => {
                 // The preload is the torque at a kink; the spring's further torque grows from zero.
-                let preload = force * triangle.lever().abs();
+                let preload = force * triangle.lever_arm().abs();
                 let spring_energy = match excess_lag > 0.0 {
                     true => triangle.spring_energy(excess_lag, force, rate, preload),
                     false => (0.0, 0.0, 0.0),
@@ -388,8 +389,8 @@ mod tests {
         for lag in [-0.1, -0.05, 0.0, 0.1] {
             assert_eq!(lag_energy.expand(lag, 0.0).0, 0.0, "{lag}");
         }
-        let (growth, lever, _) = triangle.growth_and_derivatives(0.01);
-        let torque = (8.0 + 0.7 * growth) * lever;
+        let (growth, lever_arm, _) = triangle.growth_and_derivatives(0.01);
+        let torque = (8.0 + 0.7 * growth) * lever_arm;
         assert!((lag_energy.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
         assert_eq!(lag_energy.expand(-0.11, 0.0).1, -STOP_TORQUE);
         assert_eq!(
@@ -408,7 +409,7 @@ mod tests {
             "parallel arms"
         );
         // The component of the arm perpendicular to the strut.
-        assert!((triangle.lever().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
+        assert!((triangle.lever_arm().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
         let end_lag = triangle.lag_at_growth(5.0);
         let (growth, ..) = triangle.growth_and_derivatives(end_lag);
         assert!((growth - 5.0).abs() < 1e-9, "{growth}");
@@ -416,13 +417,13 @@ mod tests {
     }
 
     #[test]
-    fn tiny_lags_and_ramps_far_below_their_kink_keep_their_digits() {
+    fn tiny_lags_and_ramps_far_below_their_kink_keep_their_precision() {
         let triangle = triangle_at(70.0);
         for lag in [1e-12, 1e-9, 1e-6] {
             // The Taylor series to second order.
             let (growth, ..) = triangle.growth_and_derivatives(lag);
-            let (_, lever, lever_slope) = triangle.growth_and_derivatives(0.0);
-            let expected_growth = lever * lag + lever_slope * lag * lag / 2.0;
+            let (_, lever_arm, lever_arm_slope) = triangle.growth_and_derivatives(0.0);
+            let expected_growth = lever_arm * lag + lever_arm_slope * lag * lag / 2.0;
             assert!(
                 (growth / expected_growth - 1.0).abs() < 1e-11,
                 "{lag} {growth}"

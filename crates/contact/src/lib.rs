@@ -1,11 +1,11 @@
 //! The contact model: the movement of a body whose feet are never lifted.
 //!
 //! Four pads, one at each foot, stand on the floor. When the legs swing, not all pads can stay in place, and friction
-//! decides which of them slide. The body moves so that the least power is lost to friction. Finding it
-//! is a small convex problem: `ground.rs` has the formula, `friction.rs` the solution. The loads of the feet
-//! (`stance.rs`) and the lag of each leg behind its servo (`drive.rs`) are part of the same problem. A pad
-//! counts as a point, whatever its shape: a leg moves its pad without turning it and the body does not tilt, so
-//! even a domed pad always touches the floor with the same point of its surface.
+//! decides which of them slide. The body moves so that the least power is lost to friction. Finding that movement is a
+//! small convex problem: `ground.rs` has the formula, `friction.rs` the solution. The loads of the feet (`stance.rs`)
+//! and the lag of each leg behind its servo (`drive.rs`) are part of the same problem. A pad counts as a point,
+//! whatever its shape: a leg moves its pad without turning it and the body does not tilt, so even a domed pad always
+//! touches the floor with the same point of its surface.
 //!
 //! A [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
 //! sweeps, as far as friction determines it; a [`Walker`] follows the sweeps step by step.
@@ -36,9 +36,9 @@
 //! ```
 //!
 //! # Units
-//! Lengths in mm, forces in N, torques in N mm, sweeps of the legs in deg (foot forward positive).
-//! Points are (forward, left), from the chassis centre or on the floor. Every array of four is in
-//! servo order: left front, right front, right hind, left hind (LF, RF, RH, LH).
+//! Lengths in mm, forces in N, torques in N mm, sweeps of the legs in deg (foot forward positive). Points are (forward,
+//! left), from the chassis centre or on the floor. Every array of four is in servo order: front left, front right, hind
+//! right, hind left (LF, RF, RH, LH).
 
 mod drive;
 mod feet;

@@ -80,7 +80,7 @@ impl Motors {
     }
 
     /// The speed of a slider, mm/s, below which its friction is modelled as proportional to the speed, so that it
-    /// cannot turn a servo back within a time step of `seconds`.
+    /// cannot reverse a servo within a time step of `seconds`.
     pub(crate) fn fade_speed(&self, seconds: f64) -> f64 {
         let square_of = |[x, y]: [f64; 2]| x * x + y * y;
         let max_arm_square = self
@@ -254,9 +254,9 @@ mod tests {
         };
         let first_leg_only = [1.0, 0.0, 0.0, 0.0];
         let [slow, fast] = [joints, JOINTS].map(|joints| angles_after(first_leg_only, joints)[0]);
-        let lever = JOINTS.slider_levers([0.0; 4])[0].abs();
-        assert!((lever - 19.8).abs() < 1e-9, "{lever}");
-        let rate_share = 1.0 - 3.0 * lever / SG90.stall_torque;
+        let lever_arm = JOINTS.slider_lever_arms([0.0; 4])[0].abs();
+        assert!((lever_arm - 19.8).abs() < 1e-9, "{lever_arm}");
+        let rate_share = 1.0 - 3.0 * lever_arm / SG90.stall_torque;
         assert!(
             (slow / fast - rate_share).abs() < 0.06,
             "{slow} {fast} {rate_share}"
@@ -272,12 +272,17 @@ mod tests {
     #[test]
     fn an_unloaded_servo_settles_within_its_dead_band() {
         let light_ground = ground_with(0.1, 0.001);
-        let banded_motor = Motor {
+        let dead_band_motor = Motor {
             half_dead_band: 0.5,
             ..SG90
         };
-        let angle = turn_servos(light_ground, &motors_with(banded_motor, JOINTS), 10.0, 1.0)
-            .servo_sweeps()[0];
+        let angle = turn_servos(
+            light_ground,
+            &motors_with(dead_band_motor, JOINTS),
+            10.0,
+            1.0,
+        )
+        .servo_sweeps()[0];
         assert!((9.49..10.51).contains(&angle), "{angle}");
         let angle =
             turn_servos(light_ground, &motors_with(SG90, JOINTS), 10.0, 1.0).servo_sweeps()[0];
@@ -285,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn the_share_of_the_line_is_one_on_the_line_and_greater_at_a_lower_supply() {
+    fn the_line_share_is_one_on_the_torque_speed_line_and_greater_at_a_lower_supply() {
         let motor_at_low_supply = SG90.at_supply(0.875);
         for (torque, rate, share) in [(176.5, 0.0, 1.0), (0.0, 500.0, 1.0), (88.25, 250.0, 1.0)] {
             assert!((SG90.line_share(torque, rate) - share).abs() < 1e-12);

@@ -1,10 +1,10 @@
-//! A servo's motor in a short time step, as a convex energy: a function of the servo's lag at the end of the step.
-//! Its slope is the sum of all torques: of the motor, its damping, its rotor's inertia and friction. So the contact
-//! problem of `friction.rs` can treat a servo like a spring.
+//! A servo's motor in a short time step, as a convex energy: a function of the servo's lag at the end of the step. The
+//! energy's slope is the sum of all torques: of the motor, its damping, its rotor's inertia and friction. So the
+//! contact problem of `friction.rs` can treat a servo like a spring.
 
 use crate::motor::Motor;
 
-/// The motion of a servo at the beginning of a step.
+/// The state of a servo at the beginning of a step, and its target.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ServoState {
     /// Angle that the pulse commands, rad.
@@ -23,15 +23,15 @@ pub(crate) type Expansion = (f64, f64, f64);
 /// Torques are in the contact problem's unit of force times mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorStep {
-    /// Angle of the target ahead of the reference, rad.
-    target_ahead: f64,
+    /// Angle by which the target leads the reference, rad.
+    target_lead: f64,
     /// Error up to which the motor applies no torque, rad: half the dead band.
     half_dead_band: f64,
     /// Error beyond the dead band at which the motor applies its full torque, rad.
     full_torque_error: f64,
     /// Stall torque.
     stall_torque: f64,
-    /// Torque of the rotor's inertia and of the damping per radian of lag, in a step of this duration.
+    /// Torque of the rotor's inertia and of the damping per radian of lag, for this step's duration.
     inertial_stiffness: f64,
     /// Lag at the end of the step if only inertia and damping acted, rad.
     coasting_lag: f64,
@@ -57,7 +57,7 @@ impl MotorStep {
         let inertial_stiffness = inertia + motor.damping() / seconds;
         let steady_turn = state.rate * seconds;
         Self {
-            target_ahead: state.target_angle - state.angle - steady_turn,
+            target_lead: state.target_angle - state.angle - steady_turn,
             half_dead_band: motor.half_dead_band.to_radians(),
             full_torque_error: motor.full_torque_error.to_radians(),
             stall_torque: motor.stall_torque / force_unit,
@@ -72,7 +72,7 @@ impl MotorStep {
     /// Energy at a lag (rad), its slope and its curvature, with the kink of dry friction smoothed
     /// over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
-        let error = self.target_ahead + lag;
+        let error = self.target_lead + lag;
         let excess_error = (error.abs() - self.half_dead_band).max(0.0);
         let gain = self.stall_torque / self.full_torque_error;
         let (energy, torque, stiffness) = match excess_error < self.full_torque_error {

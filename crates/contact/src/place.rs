@@ -3,7 +3,7 @@
 use crate::friction::Twist;
 use crate::travel::Travel;
 
-/// Position and heading of the body on the floor, in the axes of its start.
+/// Position and heading of the body on the floor, in the body's axes at the start of the walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// Distance ahead, mm.
@@ -51,13 +51,13 @@ impl Place {
         }
     }
 
-    /// The place after a travel from this one: the inverse of [`Place::travel_from`].
-    pub fn moved_by_travel(self, movement: Travel) -> Self {
-        let [forward, left] = self.to_floor([movement.forward, movement.left]);
+    /// The place after this travel from here: the inverse of [`Place::travel_from`].
+    pub fn moved_by_travel(self, travel: Travel) -> Self {
+        let [forward, left] = self.to_floor([travel.forward, travel.left]);
         Self {
             forward,
             left,
-            heading: self.heading + movement.turn.to_radians(),
+            heading: self.heading + travel.turn.to_radians(),
         }
     }
 
@@ -138,29 +138,28 @@ mod tests {
     }
 
     #[test]
-    fn a_travel_does_not_depend_on_the_place_at_which_it_starts() {
+    fn travel_in_the_bodys_axes_does_not_depend_on_the_starting_place() {
         let start = Place::START.moved_by_twist([3.0, 4.0, FRAC_PI_2]);
         let twist = [10.0, -2.0, 0.3];
-        let movement = start.moved_by_twist(twist).travel_from(start);
+        let travel = start.moved_by_twist(twist).travel_from(start);
         let expected = Place::START.moved_by_twist(twist).travel();
         assert!(
-            (movement.forward - expected.forward).abs() < 1e-12
-                && (movement.left - expected.left).abs() < 1e-12
+            (travel.forward - expected.forward).abs() < 1e-12
+                && (travel.left - expected.left).abs() < 1e-12
         );
-        assert!((movement.turn - expected.turn).abs() < 1e-12);
+        assert!((travel.turn - expected.turn).abs() < 1e-12);
         assert!(
             start
-                .moved_by_travel(movement)
+                .moved_by_travel(travel)
                 .travel_from(start.moved_by_twist(twist))
                 .forward
                 .abs()
                 < 1e-12
         );
-        let movement_travel = start.moved_by_travel(movement).travel();
-        let twist_travel = start.moved_by_twist(twist).travel();
+        let after_travel = start.moved_by_travel(travel).travel();
+        let after_twist = start.moved_by_twist(twist).travel();
         assert!(
-            (movement_travel.left - twist_travel.left)
-                .hypot(movement_travel.turn - twist_travel.turn)
+            (after_travel.left - after_twist.left).hypot(after_travel.turn - after_twist.turn)
                 < 1e-12
         );
     }

@@ -47,9 +47,10 @@ impl UnevenWalk {
     }
 
     /// Moves the servos to these sweeps, deg, and adds up the differences between the twist of each step and that of
-    /// the same step on even pads, listed in `twists`.
-    fn follow(&mut self, sweeps: [f64; 4], twists: &[Twist]) {
-        let (mut even_twists, total_differences) = (twists.iter(), &mut self.total_differences);
+    /// the same step on even pads, listed in `even_twists`.
+    fn follow(&mut self, sweeps: [f64; 4], even_twists: &[Twist]) {
+        let (mut even_twists, total_differences) =
+            (even_twists.iter(), &mut self.total_differences);
         self.walker.move_servos(sweeps, |_, displacement| {
             let even_twist = even_twists.next().copied().unwrap_or_default();
             for i in 0..3 {
@@ -184,12 +185,15 @@ mod tests {
 
     #[test]
     fn with_three_feet_against_one_the_movement_is_decided() {
-        let walk = GROUND.predict(cycle_of(ONE_BY_ONE_STARTS, stroke_wave(0.75)));
-        assert!(walk.is_decided() && walk.forward > Some(25.0), "{walk:?}");
+        let prediction = GROUND.predict(cycle_of(ONE_BY_ONE_STARTS, stroke_wave(0.75)));
+        assert!(
+            prediction.is_decided() && prediction.forward > Some(25.0),
+            "{prediction:?}"
+        );
     }
 
     #[test]
-    fn if_legs_stand_still_or_swing_together_the_movement_is_decided() {
+    fn if_the_legs_stand_still_or_swing_together_the_movement_is_decided() {
         const NO_MOVEMENT: Prediction = Prediction {
             forward: Some(0.0),
             left: Some(0.0),
@@ -197,9 +201,11 @@ mod tests {
         };
         assert_eq!(GROUND.predict([[0.0; 4]; 10]), NO_MOVEMENT);
         assert_eq!(GROUND.predict([]), NO_MOVEMENT);
-        let movement = GROUND.predict([[20.0; 4], [-20.0; 4]]);
-        let forward = movement.forward.expect("the distance ahead is decided");
-        assert!(movement.is_decided() && (forward - 90.0 * 20f64.to_radians().sin()).abs() < 1e-3);
+        let prediction = GROUND.predict([[20.0; 4], [-20.0; 4]]);
+        let forward = prediction.forward.expect("the distance ahead is decided");
+        assert!(
+            prediction.is_decided() && (forward - 90.0 * 20f64.to_radians().sin()).abs() < 1e-3
+        );
     }
 
     #[test]
@@ -224,11 +230,11 @@ mod tests {
     #[test]
     fn a_tie_over_less_than_the_tolerance_leaves_the_movement_decided() {
         let shrink_sweeps = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
-        let movement = GROUND.predict(
+        let prediction = GROUND.predict(
             cycle_of(DIAGONAL_STARTS, sine_wave)
                 .into_iter()
                 .map(shrink_sweeps),
         );
-        assert!(movement.is_decided(), "{movement:?}");
+        assert!(prediction.is_decided(), "{prediction:?}");
     }
 }

@@ -19,9 +19,8 @@ use crate::linear::solve_symmetric;
 pub struct Stance {
     /// Stiffness of a foot, N/mm: that of its leaf spring together with its pad.
     pub stiffness: f64,
-    /// Excess length of the left front foot over the other three, mm; negative if it is too
-    /// short. The same excess of the right hind foot has the same effect; that of one of the
-    /// other two feet has the opposite effect.
+    /// Excess length of the front left foot over the other three, mm; negative if it is too short. The same excess of
+    /// the hind right foot has the same effect; that of one of the other two feet has the opposite effect.
     pub twist: f64,
     /// Uncertainty of `twist` after levelling, mm to either side. Only predictions for random
     /// robots use it.
@@ -45,8 +44,8 @@ impl Stance {
         ..Self::DEFAULT
     };
 
-    /// Extra load that `twist` puts on the left front and on the right hind foot, N, if the feet
-    /// stand in a rectangle; the other two feet carry less by as much.
+    /// Extra load that `twist` puts on the front left and on the hind right foot, N, if the feet stand in a rectangle;
+    /// the other two feet carry less by as much.
     pub fn diagonal_load(&self) -> f64 {
         self.stiffness * self.twist / 4.0
     }
@@ -176,15 +175,15 @@ mod tests {
                 assert!((sum_of(|_| 1.0) - 4.0).abs() < 1e-9);
                 assert!((sum_of(|foot| foot[0]) - 4.0 * centre[0]).abs() < 1e-6);
                 assert!((sum_of(|foot| foot[1]) - 4.0 * centre[1]).abs() < 1e-6);
-                let settled_loads = loads_by_iteration(
+                let iterated_loads = loads_by_iteration(
                     &stance_with_twist(twist),
                     &body_with_mass_centre(centre),
                     SWUNG_FEET,
                 );
-                for (load, settled_load) in loads.into_iter().zip(settled_loads) {
+                for (load, iterated_load) in loads.into_iter().zip(iterated_loads) {
                     assert!(
-                        (load - settled_load).abs() < 1e-3,
-                        "{twist} {loads:?} {settled_loads:?}"
+                        (load - iterated_load).abs() < 1e-3,
+                        "{twist} {loads:?} {iterated_loads:?}"
                     );
                 }
             }
@@ -222,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_foot_never_pulls() {
-        // The centre of mass is beyond the diagonal through feet 1 and 3, so foot 2 leaves the floor.
+        // The centre of mass is beyond the diagonal from front right to hind left, so the hind right foot lifts.
         let loads = Stance::LEVEL.load_shares(&body_with_mass_centre([30.0, 50.0]), RECTANGLE);
         assert_eq!(loads[2], 0.0);
         assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");

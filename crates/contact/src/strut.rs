@@ -1,11 +1,10 @@
 //! A slotted strut with a tension spring, which connects a servo's arm to its leg's arm.
 //!
-//! The two arms are equal and parallel. With the strut and the line from the servo's shaft to the
-//! leg's pivot they form a parallelogram. The leg's screw runs in a slot of the strut, and a spring
-//! pulls the screw against one end of the slot. So the strut can grow longer but not shorter: the leg
-//! can lag behind its servo in one direction only, which is forward at the front legs and back at the
-//! hind legs of the paper's robot. The torque of the spring on the leg is its pull times a lever: the
-//! component of the arm perpendicular to the strut, which changes with the pose.
+//! The two arms are equal and parallel. With the strut and the line from the servo's shaft to the leg's pivot they form
+//! a parallelogram. The leg's screw runs in a slot of the strut, and a spring pulls the screw against one end of the
+//! slot. So the strut can grow longer but not shorter: the leg can lag behind its servo in one direction only, which is
+//! forward at the front legs and back at the hind legs of the paper's robot. The torque of the spring on the leg is its
+//! pull times a lever arm: the component of the arm perpendicular to the strut, which changes with the pose.
 
 use lizard_kinematics::wrap;
 
@@ -45,10 +44,10 @@ impl Strut {
         StrutTriangle::new(servo_end[0].hypot(servo_end[1]), self.arm_length, angle)
     }
 
-    /// Lever of the strut's pull about the leg's pivot, mm, while the leg does not lag and the servo is at
-    /// this sweep, deg.
+    /// Lever arm of the strut's pull about the leg's pivot, mm, while the leg does not lag and the servo is at this
+    /// sweep, deg.
     pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
-        self.triangle(leg, sweep).lever().abs()
+        self.triangle(leg, sweep).lever_arm().abs()
     }
 
     /// Lag (deg) at which the screw reaches the far end of the slot, and the spring's torque at that lag (N mm),
@@ -57,7 +56,7 @@ impl Strut {
         let triangle = self.triangle(leg, sweep);
         let lag = triangle.lag_at_growth(self.slot_length);
         let force = self.force + self.rate * self.slot_length;
-        let torque = force * triangle.lever_after(lag);
+        let torque = force * triangle.lever_arm_after(lag);
         (lag.to_degrees(), torque)
     }
 
@@ -71,7 +70,7 @@ impl Strut {
             self.rate / force_unit,
             self.slot_length,
         );
-        match triangle.lever() > 0.0 {
+        match triangle.lever_arm() > 0.0 {
             true => [Resistance::Stop, strut_resistance],
             false => [strut_resistance, Resistance::Stop],
         }

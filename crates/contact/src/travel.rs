@@ -1,4 +1,4 @@
-//! Travels of the body over the floor, and predictions of them.
+//! The body's travel over the floor, and its prediction.
 
 /// A movement of the body over the floor, in the axes of the body at the start of the movement.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,8 +11,8 @@ pub struct Travel {
     pub turn: f64,
 }
 
-/// A predicted travel. A component is `None` if friction does not determine it: if two feet pull one
-/// way and two the other, the slightest difference between the pads decides.
+/// A predicted travel. A component is `None` if friction does not determine it: if two feet pull one way and two the
+/// other way, the slightest difference between the pads decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// Distance ahead, mm.

@@ -18,7 +18,7 @@ const MAX_STEP_SWEEP: f64 = 0.5;
 const MAX_ITERATIONS: usize = 4;
 /// Error of a lag's estimate up to which no further iteration is needed, rad.
 const LAG_TOLERANCE: f64 = 1e-4;
-/// Rounding error that a computed number of steps may have.
+/// Largest rounding error of a computed number of steps.
 const STEP_COUNT_TOLERANCE: f64 = 1e-6;
 /// Width over which kinks of the energy are smoothed when a lag is divided between servo and leg, rad.
 const KINK_WIDTH: f64 = 1e-12;
@@ -31,7 +31,7 @@ pub struct Walker {
     unevenness: ([f64; 4], f64),
     /// Sweeps of the servos, deg.
     servo_sweeps: [f64; 4],
-    /// Speeds of the servos while motors turn them, deg/s.
+    /// Rates of the servos while motors turn them, deg/s.
     servo_rates: [f64; 4],
     /// Lags of the legs behind their servos, deg.
     lags: [f64; 4],
@@ -57,6 +57,7 @@ impl Slip {
         loads: [1.0; 4],
     };
 
+    /// Adds the slides of a step, and keeps its loads.
     fn add(&mut self, pads: &Pads, displacement: &Displacement) {
         self.loads = pads.loads;
         for (sum, [x, y]) in self

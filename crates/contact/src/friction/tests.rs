@@ -44,7 +44,7 @@ fn cost_of(pads: &Pads, displacement: &Displacement) -> f64 {
 /// largest energy that their torques can release from the springs. Returns the net force and torque, and the duality
 /// gap: the displacement's cost minus this lower bound.
 fn dual_certificate_of(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
-    let eps = max_component(&pads.swings) * MIN_ROUNDING;
+    let eps = max_component(&pads.swings) * MIN_SMOOTHING;
     let (mut lower_bound, mut net_force) = (0.0, [0.0; 3]);
     for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
         let weights = pads.slide_weights(slide);
@@ -75,10 +75,10 @@ fn dual_certificate_of(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f
 }
 
 fn assert_minimal(pads: &Pads) {
-    let (net, duality_gap) = dual_certificate_of(pads, &pads.minimise_cost());
+    let (net_force, duality_gap) = dual_certificate_of(pads, &pads.minimise_cost());
     assert!(
-        net.iter().all(|component| component.abs() < 1e-5),
-        "the forces do not balance: {net:?}"
+        net_force.iter().all(|component| component.abs() < 1e-5),
+        "the forces do not balance: {net_force:?}"
     );
     assert!(
         duality_gap.abs() < 1e-5 * max_component(&pads.swings),
@@ -189,8 +189,8 @@ proptest! {
         let joint = [22.0 * cos - 30.2, 22.0 * sin];
         let angle = joint[1].atan2(joint[0]) - arm_deg.to_radians();
         let triangle = StrutTriangle::new(joint[0].hypot(joint[1]), 22.0, angle);
-        // A spring for a robot of the paper's size. Its rate makes the torque rise as the strut grows, although
-        // the lever shrinks: the energy must be convex.
+        // A spring for a robot of the paper's size. Its rate makes the torque rise as the strut grows, although its
+        // lever arm shrinks: the energy must be convex.
         let upper_resistance = force.map_or(Resistance::Stop, |force| Resistance::strut(triangle, force, 1.5, 5.0));
         let drive = LagEnergy { play, stop_torque: STOP_TORQUE, lower_resistance: Resistance::Stop, upper_resistance, motor: None };
         let compliance = Some(Compliance {
