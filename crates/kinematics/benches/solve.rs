@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use lizard_kinematics::{Leg, Lizard, Pose};
 
+/// Number of poses in a pass.
 const POSE_COUNT: usize = 200_000;
 
 /// The lengths of the paper's links, l0 to l19, mm.
@@ -13,11 +14,11 @@ const LINKS: [f64; 20] = [
     100.0, 30.0, 45.0, 45.0, 30.0,
 ];
 
-/// The neutral angles of the servos, degrees.
+/// The neutral angles of the servos, degrees, in servo order.
 const NEUTRAL_POSE: [f64; 4] = [138.59, 41.41, 318.59, 221.41];
 
-/// A pose in the paper's safe box, within 34 degrees of neutral. Multiples of these irrational steps
-/// fill the box evenly.
+/// Servo angles (degrees) in the paper's safe box, within 34 degrees of neutral. Multiples of these
+/// irrational steps fill the box evenly.
 fn pose_of(index: usize) -> [f64; 4] {
     let steps = [0.856_674_883, 0.733_891_856, 0.628_706_720, 0.538_597_257];
     std::array::from_fn(|servo| {

@@ -13,7 +13,7 @@
 
 use core::f64::consts::PI;
 
-/// (sin r - r) / r^3 in powers of r^2, for |r| up to 45 degrees.
+/// Coefficients of (sin r - r) / r^3 in powers of r^2, for |r| up to 45 degrees.
 const SIN: [f64; 6] = [
     -0.16666666666666666,
     0.008333333333330948,
@@ -23,7 +23,7 @@ const SIN: [f64; 6] = [
     1.5918115263265974e-10,
 ];
 
-/// (cos r - 1 + r^2 / 2) / r^4 in powers of r^2, for |r| up to 45 degrees.
+/// Coefficients of (cos r - 1 + r^2 / 2) / r^4 in powers of r^2, for |r| up to 45 degrees.
 const COS: [f64; 6] = [
     0.041666666666666664,
     -0.0013888888888887398,
@@ -33,7 +33,7 @@ const COS: [f64; 6] = [
     -1.1382623647474604e-11,
 ];
 
-/// (atan u - u) / u^3 in powers of u^2, for |u| up to tan 22.5 degrees.
+/// Coefficients of (atan u - u) / u^3 in powers of u^2, for |u| up to tan 22.5 degrees.
 const ATAN: [f64; 11] = [
     -0.3333333333333333,
     0.19999999999995516,
@@ -51,12 +51,12 @@ const ATAN: [f64; 11] = [
 /// tan 22.5 degrees.
 const TAN_HALF_EIGHTH: f64 = 0.41421356237309503;
 
-/// 1.5 * 2^52. Adding it rounds a number to an integer, whose last bits are those of the sum;
-/// subtracting it again gives the integer.
+/// 1.5 * 2^52. Adding this constant rounds a number to an integer, whose last bits are those of the
+/// sum; subtracting the constant again gives the integer.
 const ROUNDING_CONSTANT: f64 = 6_755_399_441_055_744.0;
 
-/// Least magnitude of an angle, deg, that [`ROUNDING_CONSTANT`] may not reduce exactly.
-const MIN_FAR_ANGLE: f64 = 1e15;
+/// Smallest magnitude of an angle, deg, that [`ROUNDING_CONSTANT`] may not reduce exactly.
+const MIN_HUGE_ANGLE: f64 = 1e15;
 
 /// Evaluates a polynomial by Horner's rule.
 #[inline(always)]
@@ -70,11 +70,11 @@ fn horner<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     sum
 }
 
-/// Returns `yes` if the mask is all ones, `no` if it is zero. If a comparison of random numbers
-/// were compiled to a branch, half of its predictions would be wrong.
+/// Returns `if_ones` if the mask is all ones, `if_zero` if it is zero, without a branch: on random
+/// input, half of a branch's predictions would be wrong.
 #[inline(always)]
-fn choose(mask: u64, yes: f64, no: f64) -> f64 {
-    f64::from_bits(no.to_bits() ^ ((yes.to_bits() ^ no.to_bits()) & mask))
+fn select(mask: u64, if_ones: f64, if_zero: f64) -> f64 {
+    f64::from_bits(if_zero.to_bits() ^ ((if_ones.to_bits() ^ if_zero.to_bits()) & mask))
 }
 
 /// Returns a mask of all ones if the condition is true, otherwise zero.
@@ -106,12 +106,12 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
 pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
     let mut degrees = degrees;
-    let mut has_far_angle = false;
+    let mut has_huge_angle = false;
     for angle in &degrees {
-        has_far_angle |= angle.abs() >= MIN_FAR_ANGLE;
+        has_huge_angle |= angle.abs() >= MIN_HUGE_ANGLE;
     }
-    if has_far_angle {
-        reduce_far_angles(&mut degrees);
+    if has_huge_angle {
+        reduce_huge_angles(&mut degrees);
     }
     for i in 0..N {
         let rounded = degrees[i] * (1.0 / 90.0) + ROUNDING_CONSTANT;
@@ -128,15 +128,15 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
         let odd_mask = (quadrant & 1).wrapping_neg();
         let sine_sign = (quadrant & 2) << 62;
         let cosine_sign = sine_sign ^ (odd_mask & SIGN_BIT);
-        sines[i] = f64::from_bits(choose(odd_mask, cos, sin).to_bits() ^ sine_sign) + 0.0;
-        cosines[i] = f64::from_bits(choose(odd_mask, sin, cos).to_bits() ^ cosine_sign) + 0.0;
+        sines[i] = f64::from_bits(select(odd_mask, cos, sin).to_bits() ^ sine_sign) + 0.0;
+        cosines[i] = f64::from_bits(select(odd_mask, sin, cos).to_bits() ^ cosine_sign) + 0.0;
     }
     (sines, cosines)
 }
 
-/// Reduces angles of any magnitude to within a turn, exactly.
+/// Reduces angles of any magnitude to less than a turn, exactly.
 #[cold]
-fn reduce_far_angles(degrees: &mut [f64]) {
+fn reduce_huge_angles(degrees: &mut [f64]) {
     for angle in degrees {
         *angle %= 360.0;
     }
@@ -153,20 +153,20 @@ fn reduce_far_angles(degrees: &mut [f64]) {
 pub fn atan2(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
     let steep_mask = mask_of(ay > ax);
-    let (long, short) = (choose(steep_mask, ay, ax), choose(steep_mask, ax, ay));
+    let (long, short) = (select(steep_mask, ay, ax), select(steep_mask, ax, ay));
     // Within the first 45 degrees, the polynomial is evaluated relative to 0 or to 45 degrees,
     // whichever is nearer.
     let diagonal_mask = mask_of(short > TAN_HALF_EIGHTH * long);
-    let numerator = choose(diagonal_mask, short - long, short);
-    let denominator = choose(diagonal_mask, short + long, long);
+    let numerator = select(diagonal_mask, short - long, short);
+    let denominator = select(diagonal_mask, short + long, long);
     let zero_mask = mask_of(denominator == 0.0);
-    let u = numerator / choose(zero_mask, 1.0, denominator);
+    let u = numerator / select(zero_mask, 1.0, denominator);
     let z = u * u;
-    let base = choose(diagonal_mask, 45.0, 0.0);
+    let base = select(diagonal_mask, 45.0, 0.0);
     let eighth = base + (u + u * (z * horner(&ATAN, z))) * (180.0 / PI);
-    let quarter = choose(steep_mask, 90.0 - eighth, eighth);
-    let half = choose(mask_of(x < 0.0), 180.0 - quarter, quarter);
-    choose(mask_of(y < 0.0), -half, half)
+    let quarter = select(steep_mask, 90.0 - eighth, eighth);
+    let half = select(mask_of(x < 0.0), 180.0 - quarter, quarter);
+    select(mask_of(y < 0.0), -half, half)
 }
 
 /// Wraps an angle to (-180, 180] degrees, exactly. NaN if the angle is infinite.
@@ -215,25 +215,25 @@ mod tests {
         }
 
         #[test]
-        fn quarter_turns_change_only_order_and_signs(
+        fn quarter_turns_only_swap_sine_and_cosine_and_change_their_signs(
             degrees in -44.99..44.99f64, turns in -1_000_000..1_000_000i32,
         ) {
-            // On this grid, adding quarter turns is exact.
-            let grid = (degrees * 4096.0).round() / 4096.0;
-            // At 45 degrees either of two quadrants may be used.
-            prop_assume!(grid.abs() < 45.0);
-            let (sin, cos) = sin_cos(grid);
-            let quarter = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
-            let expected = quarter[turns.rem_euclid(4) as usize];
-            let computed = sin_cos(grid + 90.0 * f64::from(turns));
+            // Adding quarter turns to a multiple of 1/4096 degree is exact.
+            let rounded = (degrees * 4096.0).round() / 4096.0;
+            // At 45 degrees, either of the two neighbouring quadrants may be used.
+            prop_assume!(rounded.abs() < 45.0);
+            let (sin, cos) = sin_cos(rounded);
+            let quarters = [(sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin)];
+            let expected = quarters[turns.rem_euclid(4) as usize];
+            let computed = sin_cos(rounded + 90.0 * f64::from(turns));
             prop_assert_eq!(computed, expected);
         }
 
         #[test]
         fn arc_tangents_agree_with_libm(
-            x in -1.0..1.0f64, y in -1.0..1.0f64, size in -300..300i32,
+            x in -1.0..1.0f64, y in -1.0..1.0f64, exponent in -300..300i32,
         ) {
-            let scale = 10f64.powi(size);
+            let scale = 10f64.powi(exponent);
             let computed = atan2(y * scale, x * scale);
             let expected = libm::atan2(y * scale, x * scale).to_degrees();
             prop_assert!((computed - expected).abs() <= 3.0 * f64::EPSILON * expected.abs(), "{computed} {expected}");

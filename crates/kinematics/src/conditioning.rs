@@ -20,7 +20,7 @@ impl Jacobian {
         self.left.cross(self.right)
     }
 
-    /// The largest and the smallest singular value, mm per radian.
+    /// The largest and the smallest singular values, mm per radian.
     pub fn singular_values(&self) -> [f64; 2] {
         let (sum, det) = (
             self.left.length_squared() + self.right.length_squared(),

@@ -73,10 +73,10 @@ impl Solution {
         let mut k = [[0.0; 4]; 8];
         for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
             let ([left, right], pose) = (end.servos(), self.end(end));
-            let bars = &pose.bars;
-            let crank = end.mirror(pose.left_crank) * bars.left_crank_length;
+            let five_bar = &pose.bars;
+            let crank = end.mirror(pose.left_crank) * five_bar.left_crank_length;
             put_derivative(&mut k, row, left, crank.rotated_left());
-            let crank = end.mirror(pose.right_crank) * bars.right_crank_length;
+            let crank = end.mirror(pose.right_crank) * five_bar.right_crank_length;
             put_derivative(&mut k, row, right, -crank.rotated_left());
         }
         for (row, side) in LOOP_ROWS.into_iter().skip(2).zip(Side::ALL) {
@@ -92,18 +92,18 @@ impl Solution {
     pub fn passive_matrix(&self) -> [[f64; 8]; 8] {
         let mut k = [[0.0; 8]; 8];
         for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
-            let ([left, right], bars) = (self.couplers(end), &self.end(end).bars);
+            let ([left, right], five_bar) = (self.couplers(end), &self.end(end).bars);
             put_derivative(
                 &mut k,
                 row,
                 row,
-                (left * bars.left_coupler_length).rotated_left(),
+                (left * five_bar.left_coupler_length).rotated_left(),
             );
             put_derivative(
                 &mut k,
                 row,
                 row + 1,
-                -(right * bars.right_coupler_length).rotated_left(),
+                -(right * five_bar.right_coupler_length).rotated_left(),
             );
         }
         for (row, side) in LOOP_ROWS.into_iter().skip(2).zip(Side::ALL) {
@@ -149,13 +149,13 @@ impl Lizard {
             (residual[row], residual[row + 1]) = (gap.x, gap.y);
         };
         for ((row, end), theta) in LOOP_ROWS.into_iter().zip(End::ALL).zip(couplers) {
-            let ([left, right], bars) = (end.servos(), self.end(end));
+            let ([left, right], five_bar) = (end.servos(), self.end(end));
             let gap = shafts[left]
-                + cis(active[left]) * bars.left_crank_length
-                + cis(theta[0]) * bars.left_coupler_length
+                + cis(active[left]) * five_bar.left_crank_length
+                + cis(theta[0]) * five_bar.left_coupler_length
                 - (shafts[right]
-                    + cis(active[right]) * bars.right_crank_length
-                    + cis(theta[1]) * bars.right_coupler_length);
+                    + cis(active[right]) * five_bar.right_crank_length
+                    + cis(theta[1]) * five_bar.right_coupler_length);
             put_residual(row, gap);
         }
         for ((row, side), (phi, s)) in LOOP_ROWS.into_iter().skip(2).zip(Side::ALL).zip(sliders) {
@@ -239,10 +239,10 @@ mod tests {
             (robot, _, solution) in any_solved_robot(),
         ) {
             let product = solution.block_determinants().determinant();
-            let eliminated_determinant = determinant_of(solution.passive_matrix());
+            let determinant = determinant_of(solution.passive_matrix());
             let l = robot.links;
             let scale = l.l2 * l.l3 * l.l7 * l.l8 * solution.left.d * solution.right.d;
-            prop_assert!((product - eliminated_determinant).abs() < 1e-9 * scale, "{product} {eliminated_determinant}");
+            prop_assert!((product - determinant).abs() < 1e-9 * scale, "{product} {determinant}");
         }
     }
 

@@ -121,9 +121,11 @@ fn degrees_of(radians: f64) -> f64 {
 
 /// The rates and accelerations of a five-bar, in the end's own frame.
 struct LoopDerivatives {
-    /// Rotation of the left coupler.
+    /// The left coupler's rotation.
     left_coupler: Spin,
+    /// The right coupler's rotation.
     right_coupler: Spin,
+    /// The end point, mm.
     point: Derivative<Vector>,
 }
 
@@ -173,13 +175,16 @@ fn slider_derivatives(
     let slider_direction = pose.span * (1.0 / pose.d);
     let v = front.rotated_left() * front_spin.rate - rear.rotated_left() * rear_spin.rate;
     let a = end_acceleration(front, front_spin) - end_acceleration(rear, rear_spin);
-    let (slide, turn) = (v.dot(slider_direction), slider_direction.cross(v) / pose.d);
+    let (travel_rate, turn_rate) = (v.dot(slider_direction), slider_direction.cross(v) / pose.d);
     (
         Spin::new(
-            turn,
-            (slider_direction.cross(a) - 2.0 * slide * turn) / pose.d,
+            turn_rate,
+            (slider_direction.cross(a) - 2.0 * travel_rate * turn_rate) / pose.d,
         ),
-        Derivative::new(slide, a.dot(slider_direction) + pose.d * turn * turn),
+        Derivative::new(
+            travel_rate,
+            a.dot(slider_direction) + pose.d * turn_rate * turn_rate,
+        ),
     )
 }
 
@@ -195,7 +200,7 @@ mod tests {
     /// Largest step of the central differences, s.
     const MAX_STEP: f64 = 1e-4;
     /// Approximate largest change of a passive quantity in a step, deg or mm.
-    const MAX_STEP_TURN: f64 = 0.1;
+    const MAX_STEP_CHANGE: f64 = 0.1;
 
     /// The values of all passive quantities: angles of couplers and sliders, coordinates of head and tail, travels
     /// of the sliders.
@@ -246,23 +251,23 @@ mod tests {
         )
     }
 
-    /// Solves the robot's pose `t` seconds later, under constant servo accelerations.
+    /// Solves the robot's pose `t` seconds later, with constant servo accelerations.
     fn solve_after(
         robot: &Lizard,
         pose: [f64; 4],
         motion: &ServoMotion,
         t: f64,
     ) -> Option<Solution> {
-        let mut moved_pose = pose;
-        for (i, angle) in moved_pose.iter_mut().enumerate() {
+        let mut later_pose = pose;
+        for (i, angle) in later_pose.iter_mut().enumerate() {
             *angle += motion.rate[i] * t + motion.acceleration[i] * t * t / 2.0;
         }
-        robot.solve(&Pose::from(moved_pose)).ok()
+        robot.solve(&Pose::from(later_pose)).ok()
     }
 
     fn any_motion() -> impl Strategy<Value = ServoMotion> {
-        let four_ranges = |max: f64| [-max..max, -max..max, -max..max, -max..max];
-        (four_ranges(300.0), four_ranges(2000.0))
+        let four_ranges_of = |max: f64| [-max..max, -max..max, -max..max, -max..max];
+        (four_ranges_of(300.0), four_ranges_of(2000.0))
             .prop_map(|(rate, acceleration)| ServoMotion { rate, acceleration })
     }
 
@@ -270,7 +275,7 @@ mod tests {
         #![proptest_config(config_with_cases(2048))]
 
         #[test]
-        fn rates_and_accelerations_are_the_difference_quotients_of_positions(
+        fn rates_and_accelerations_equal_the_difference_quotients_of_positions(
             (robot, pose, solution) in any_solved_robot(), motion in any_motion(),
         ) {
             // Near a singularity, higher derivatives are too large for any fixed step.
@@ -280,8 +285,8 @@ mod tests {
             let (rates, accelerations) = derivatives_of(&solution, &motion);
             let largest_of = |values: &[f64; 12]| values.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
             let (largest_rate, largest_acceleration) = (largest_of(&rates), largest_of(&accelerations));
-            let step = MAX_STEP.min(MAX_STEP_TURN / largest_rate);
-            // The formulas with five points have errors of the fourth order in the step.
+            let step = MAX_STEP.min(MAX_STEP_CHANGE / largest_rate);
+            // The errors of the five-point formulas are of fourth order in the step.
             let values_at = |steps: f64| solve_after(&robot, pose, &motion, steps * step).map(|s| values_of(&s));
             let start_values = values_of(&solution);
             let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(values_at) else {

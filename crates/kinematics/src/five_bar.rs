@@ -4,7 +4,7 @@
 //! intersection of two circles. Forward and inverse kinematics both use the area of a triangle in the factored form of
 //! Heron's formula, which loses no digits if the triangle is flat.
 //!
-//! The paper solves R1 + R2 = R0 + R4 + R3 with the tangents of half angles. Its theta3 is right, but the formula is
+//! The paper solves R1 + R2 = R0 + R4 + R3 with the tangents of half angles. Its theta3 is correct, but the formula is
 //! 0/0 if the crank tips coincide, and loses digits if the paper's A is 0. Its theta2 (D, E, F, K4) has three wrong
 //! signs.
 
@@ -37,7 +37,7 @@ pub struct FiveBar {
 }
 
 /// The side of the line through the crank tips on which the end point lies. A mechanism cannot
-/// change it without passing through a type-2 singularity.
+/// change its assembly mode without passing through a type-2 singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AssemblyMode {
     /// End point to the left of the line from the left crank tip to the right one, which is ahead as long as the cranks
@@ -119,13 +119,19 @@ impl FiveBar {
     /// The five-bar of five lengths in mm: base, then left crank, left coupler, right
     /// coupler, right crank.
     pub const fn new(lengths: [f64; 5]) -> Self {
-        let [base, crank_left, coupler_left, coupler_right, crank_right] = lengths;
+        let [
+            base,
+            left_crank_length,
+            left_coupler_length,
+            right_coupler_length,
+            right_crank_length,
+        ] = lengths;
         Self {
             base,
-            left_crank_length: crank_left,
-            left_coupler_length: coupler_left,
-            right_coupler_length: coupler_right,
-            right_crank_length: crank_right,
+            left_crank_length,
+            left_coupler_length,
+            right_coupler_length,
+            right_crank_length,
         }
     }
 
@@ -205,7 +211,7 @@ impl FiveBar {
         is_closed
     }
 
-    /// Checks a pose by the distance `d` of its crank tips, and by its [`FiveBarPose::finiteness_probe`].
+    /// Checks a pose by the distance `d` between its crank tips, and by its [`FiveBarPose::finiteness_probe`].
     #[inline(always)]
     fn check_closure(&self, d: f64, probe: f64) -> Result<(), Fault> {
         let (l2, l3) = (self.left_coupler_length, self.right_coupler_length);

@@ -35,7 +35,7 @@
 //!     let point = solution.head_point();
 //!     println!("head at {:.2}, {:.2} mm; left slider at {:.2} mm", point.x, point.y, solution.left.s);
 //!
-//!     // The smallest margin: 0 is a singularity, 1 is the farthest from one.
+//!     // The smallest margin: 0 at a singularity, 1 as far from one as possible.
 //!     let (check, margin) = solution.margins.min();
 //!     assert!(margin > 0.3, "{check} has only {margin}");
 //!

@@ -91,8 +91,8 @@ impl Limits {
         })
     }
 
-    /// The violations of all limits that a solved pose breaks; none if it is safe. This is the only
-    /// definition of a safe pose.
+    /// All violations of limits by a solved pose; none if it is safe. This is the only definition of a
+    /// safe pose.
     ///
     /// In addition to margins and slider travels, a safe pose requires crank tips that are not crossed: the x of
     /// [`FiveBarPose::gap`], the paper's K2, must be above 0. Poses with crossed tips may have good margins, too, but
@@ -104,7 +104,7 @@ impl Limits {
             .filter_map(move |(check, value)| limits.violation_of(check, value))
     }
 
-    /// The violations of all limits that the five-bar of one end breaks, whatever the pose of the rest of the robot.
+    /// All violations of limits by the five-bar of one end, whatever the pose of the rest of the robot.
     pub fn end_violations(
         &self,
         end: End,
@@ -116,7 +116,7 @@ impl Limits {
             .filter_map(move |(check, value)| limits.violation_of(check, value))
     }
 
-    /// True if a solved pose breaks no limit.
+    /// True if a solved pose violates no limit.
     pub fn is_safe(&self, solution: &Solution) -> bool {
         self.violations(solution).next().is_none()
     }

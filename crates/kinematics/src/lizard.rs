@@ -131,17 +131,17 @@ impl Solution {
 
     /// The directions of an end's left and right couplers, length one, chassis frame.
     pub fn couplers(&self, end: End) -> [Vector; 2] {
-        let five_bar = self.end(end);
-        [five_bar.left_coupler, five_bar.right_coupler].map(|coupler| end.mirror(coupler))
+        let pose = self.end(end);
+        [pose.left_coupler, pose.right_coupler].map(|coupler| end.mirror(coupler))
     }
 
     /// The tips of the four cranks in servo order, mm, chassis frame.
     pub fn crank_tips(&self) -> [Vector; 4] {
         let mut tips = [self.head.left_tip; 4];
         for end in End::ALL {
-            let ([left, right], bars) = (end.servos(), self.end(end));
-            tips[left] = self.lizard.to_chassis(end, bars.left_tip);
-            tips[right] = self.lizard.to_chassis(end, bars.right_tip);
+            let ([left, right], pose) = (end.servos(), self.end(end));
+            tips[left] = self.lizard.to_chassis(end, pose.left_tip);
+            tips[right] = self.lizard.to_chassis(end, pose.right_tip);
         }
         tips
     }
@@ -197,9 +197,9 @@ impl Lizard {
     pub fn shafts(&self) -> [Vector; 4] {
         let mut shafts = [Vector::default(); 4];
         for end in End::ALL {
-            let ([left, right], bars) = (end.servos(), self.end(end));
-            shafts[left] = self.to_chassis(end, bars.left_shaft());
-            shafts[right] = self.to_chassis(end, bars.right_shaft());
+            let ([left, right], five_bar) = (end.servos(), self.end(end));
+            shafts[left] = self.to_chassis(end, five_bar.left_shaft());
+            shafts[right] = self.to_chassis(end, five_bar.right_shaft());
         }
         shafts
     }
@@ -245,10 +245,10 @@ impl Lizard {
         };
         let legs: [LegPose; 4] = core::array::from_fn(leg_pose_of);
         let mut type1 = [head.type2; 4];
-        for (end, bars) in [(End::Head, &head), (End::Tail, &tail)] {
+        for (end, pose) in [(End::Head, &head), (End::Tail, &tail)] {
             let [left, right] = end.servos();
-            type1[left] = bars.type1_left();
-            type1[right] = bars.type1_right();
+            type1[left] = pose.type1_left();
+            type1[right] = pose.type1_right();
         }
         Solution {
             pose: *pose,

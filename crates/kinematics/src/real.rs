@@ -8,7 +8,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::angle::sin_cos_all;
 
-/// A number, or several, with which the closed forms can be computed.
+/// A number, or a vector of several, for which the closed forms can be computed.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -44,7 +44,7 @@ impl Real for f64 {
     }
 }
 
-/// Several numbers; every operation acts on all of them.
+/// Several numbers, one per lane; every operation acts on each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 

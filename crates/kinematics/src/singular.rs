@@ -42,32 +42,35 @@ impl FiveBar {
         &self,
         theta_left: f64,
     ) -> impl Iterator<Item = SingularPose> + use<> {
-        let bars = *self;
+        let five_bar = *self;
         let left = Vector::direction(theta_left);
-        let tip = bars.left_shaft() + left * bars.left_crank_length;
-        let (l2, l3) = (bars.left_coupler_length, bars.right_coupler_length);
+        let tip = five_bar.left_shaft() + left * five_bar.left_crank_length;
+        let (l2, l3) = (five_bar.left_coupler_length, five_bar.right_coupler_length);
         // Type 2: the distance between the crank tips is the sum or the difference of the
         // couplers.
         let couplers = [l2 + l3, (l2 - l3).abs()]
             .into_iter()
             .filter(|reach| *reach > 0.0)
-            .flat_map(move |reach| bars.right_cranks_at(tip, reach))
+            .flat_map(move |reach| five_bar.right_cranks_at(tip, reach))
             .map(|theta| (Singularity::Couplers, theta));
-        // Type 1, left arm: the end point is at the tip of the stretched or folded arm.
+        // Type 1, left arm: the end point is the tip of the stretched or folded arm.
         let left_arm = [l2, -l2]
             .into_iter()
-            .flat_map(move |reach| bars.right_cranks_at(tip + left * reach, l3))
+            .flat_map(move |reach| five_bar.right_cranks_at(tip + left * reach, l3))
             .map(|theta| (Singularity::LeftArm, theta));
         // Type 1, right arm: the end point is on a circle about the right shaft with radius l4 + l3 or
         // |l4 - l3|.
-        let right_arm = [bars.right_crank_length + l3, bars.right_crank_length - l3]
-            .into_iter()
-            .flat_map(move |reach| {
-                circle_intersections(tip, l2, bars.right_shaft(), reach.abs())
-                    .map(move |point| (point - bars.right_shaft()) * (1.0 / reach))
-            })
-            .filter(|crank| crank.is_finite())
-            .map(|crank| (Singularity::RightArm, crank.angle()));
+        let right_arm = [
+            five_bar.right_crank_length + l3,
+            five_bar.right_crank_length - l3,
+        ]
+        .into_iter()
+        .flat_map(move |reach| {
+            circle_intersections(tip, l2, five_bar.right_shaft(), reach.abs())
+                .map(move |point| (point - five_bar.right_shaft()) * (1.0 / reach))
+        })
+        .filter(|crank| crank.is_finite())
+        .map(|crank| (Singularity::RightArm, crank.angle()));
         couplers
             .chain(left_arm)
             .chain(right_arm)
@@ -76,7 +79,7 @@ impl FiveBar {
                 theta_left: wrap(theta_left),
                 theta_right,
             })
-            .filter(move |pose| bars.is_singular(pose))
+            .filter(move |pose| five_bar.is_singular(pose))
     }
 
     /// The poses in which both crank tips coincide, so that the end point is free on a circle;
@@ -125,14 +128,14 @@ impl Singularity {
 /// The intersections of two circles with centres `a`, `b` and radii `r`, `s`: none or two, which
 /// are equal if the circles touch.
 fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
-    let centre_vector = b - a;
-    let square = centre_vector.length_squared();
-    let foot_share = (square + (r - s) * (r + s)) / (2.0 * square);
-    let height_share = (r * r / square - foot_share * foot_share).sqrt();
+    let centre_line = b - a;
+    let square = centre_line.length_squared();
+    let foot_ratio = (square + (r - s) * (r + s)) / (2.0 * square);
+    let height_ratio = (r * r / square - foot_ratio * foot_ratio).sqrt();
     // Circles that do not intersect, or are concentric, give NaN or infinity.
-    let points = height_share.is_finite().then(|| {
-        let foot = a + centre_vector * foot_share;
-        let height = centre_vector.rotated_left() * height_share;
+    let points = height_ratio.is_finite().then(|| {
+        let foot = a + centre_line * foot_ratio;
+        let height = centre_line.rotated_left() * height_ratio;
         [foot + height, foot - height]
     });
     points.into_iter().flatten()
@@ -143,30 +146,30 @@ mod tests {
     use super::*;
     use crate::reference::PAPER_HEAD;
 
-    fn margin_of(bars: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
-        let pose = bars.forward(left, right).ok()?;
+    fn margin_of(five_bar: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
+        let pose = five_bar.forward(left, right).ok()?;
         Some(kind.margin(&pose))
     }
 
     #[test]
     fn every_sign_change_of_a_type_1_margin_lies_on_a_singular_curve() {
-        let unequal_bars = FiveBar::new([20.0, 25.0, 55.0, 50.0, 30.0]);
+        let unequal_five_bar = FiveBar::new([20.0, 25.0, 55.0, 50.0, 30.0]);
         let mut sign_change_count = 0;
-        for bars in [PAPER_HEAD, unequal_bars] {
+        for five_bar in [PAPER_HEAD, unequal_five_bar] {
             for left in (-175..180).step_by(10).map(f64::from) {
-                let singular_poses: Vec<_> = bars.singular_poses_with(left).collect();
+                let singular_poses: Vec<_> = five_bar.singular_poses_with(left).collect();
                 for kind in [Singularity::LeftArm, Singularity::RightArm] {
                     for step in 0..3600 {
                         let (a, b) = (f64::from(step) / 10.0 + 0.03, f64::from(step) / 10.0 + 0.13);
                         let (Some(value_a), Some(value_b)) = (
-                            margin_of(&bars, kind, left, a),
-                            margin_of(&bars, kind, left, b),
+                            margin_of(&five_bar, kind, left, a),
+                            margin_of(&five_bar, kind, left, b),
                         ) else {
                             continue;
                         };
                         // If the crank tips nearly coincide, the end point moves fast and signs change
                         // abruptly.
-                        let gap = bars.forward(left, a).unwrap().gap.length();
+                        let gap = five_bar.forward(left, a).unwrap().gap.length();
                         if value_a * value_b >= 0.0 || gap < 1.0 {
                             continue;
                         }
@@ -184,14 +187,14 @@ mod tests {
 
     #[test]
     fn every_singular_pose_has_a_vanishing_margin() {
-        let short_bars = FiveBar::new([20.0, 30.0, 30.0, 25.0, 30.0]);
+        let five_bar_with_short_couplers = FiveBar::new([20.0, 30.0, 30.0, 25.0, 30.0]);
         let mut kind_counts = [0; 3];
-        for bars in [PAPER_HEAD, short_bars] {
+        for five_bar in [PAPER_HEAD, five_bar_with_short_couplers] {
             for left in -180..180 {
-                for pose in bars.singular_poses_with(f64::from(left)) {
+                for pose in five_bar.singular_poses_with(f64::from(left)) {
                     kind_counts[pose.kind as usize] += 1;
                     if let Some(value) =
-                        margin_of(&bars, pose.kind, pose.theta_left, pose.theta_right)
+                        margin_of(&five_bar, pose.kind, pose.theta_left, pose.theta_right)
                     {
                         assert!(value.abs() < 1e-6, "{pose:?} {value}");
                     }
@@ -221,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn no_path_of_good_margins_leads_to_crossed_cranks() {
+    fn no_path_with_sufficient_margins_leads_to_crossed_cranks() {
         // A flood fill divides the poses of a half-degree grid in which every margin, including those
         // of the legs, is at least 0.3, into connected regions. No region contains both crossed and
         // uncrossed cranks. The grid covers the cranks' range between the legs' change points at 0 and

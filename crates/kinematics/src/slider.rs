@@ -71,7 +71,8 @@ impl Slider {
         self.close(rear, front)
     }
 
-    /// The pose with arms along two unit vectors.
+    /// The pose with arms along two unit vectors; like [`Slider::forward`], but without computing sines
+    /// and cosines.
     ///
     /// # Errors
     /// Fails as [`Slider::forward`] does.

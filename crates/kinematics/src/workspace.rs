@@ -28,12 +28,12 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// The workspace of a five-bar, both of whose arms have the lengths of its left arm.
-    pub fn of(bars: &FiveBar) -> Self {
+    /// The workspace of a symmetrical five-bar; the lengths of its left arm count for both arms.
+    pub fn of(five_bar: &FiveBar) -> Self {
         Self {
-            half_base: bars.base / 2.0,
-            inner_radius: (bars.left_crank_length - bars.left_coupler_length).abs(),
-            outer_radius: bars.left_crank_length + bars.left_coupler_length,
+            half_base: five_bar.base / 2.0,
+            inner_radius: (five_bar.left_crank_length - five_bar.left_coupler_length).abs(),
+            outer_radius: five_bar.left_crank_length + five_bar.left_coupler_length,
         }
     }
 
@@ -49,10 +49,11 @@ impl Workspace {
     /// The area, mm^2, of the parts on both sides of the base together.
     pub fn area(&self) -> f64 {
         let distance = 2.0 * self.half_base;
-        let (r, s) = (self.inner_radius, self.outer_radius);
+        let (inner, outer) = (self.inner_radius, self.outer_radius);
         // The overlap of both large discs, minus the overlap of each small disc with the other large
-        // disc. The overlap of both small discs is thereby subtracted twice, so it is added once.
-        lens_area(s, s, distance) - 2.0 * lens_area(r, s, distance) + lens_area(r, r, distance)
+        // disc. This subtracts the overlap of both small discs twice, so it is added once.
+        lens_area(outer, outer, distance) - 2.0 * lens_area(inner, outer, distance)
+            + lens_area(inner, inner, distance)
     }
 
     /// The largest circle within the workspace; of two mirror images, the one ahead. `None` if the

@@ -13,7 +13,7 @@ type Number = FBig<HalfEven, 2>;
 
 /// Precision of every computation, bits.
 const PRECISION_BITS: usize = 256;
-/// Share by which the interval of the nodes extends beyond the square of the largest argument,
+/// Fraction by which the interval of the nodes extends beyond the square of the largest argument,
 /// because rounding may push an argument beyond its limit.
 const INTERVAL_MARGIN: f64 = 1e-4;
 /// Number of points at which an error is measured.
@@ -29,9 +29,9 @@ pub struct Polynomial {
     max_argument: fn() -> Number,
     /// The function f.
     function: fn(&Number) -> Number,
-    /// The first terms of the function's power series.
+    /// The first terms of the power series of f.
     leading_terms: fn(&Number) -> Number,
-    /// The exponent of x in the polynomial's factor.
+    /// The exponent of the factor of P.
     exponent: i32,
 }
 
@@ -63,12 +63,13 @@ pub const POLYNOMIALS: [Polynomial; 3] = [
     },
 ];
 
+/// Converts an integer exactly.
 fn number_from(value: u32) -> Number {
     Number::from(value).with_precision(PRECISION_BITS).value()
 }
 
-/// Converts an f64 exactly.
-fn exact_number_from(value: f64) -> Number {
+/// Converts a finite f64 exactly.
+fn number_from_f64(value: f64) -> Number {
     let exact = Number::try_from(value).expect("the number is finite");
     exact.with_precision(PRECISION_BITS).value()
 }
@@ -76,9 +77,10 @@ fn exact_number_from(value: f64) -> Number {
 impl Polynomial {
     /// Computes the coefficients of P, the constant first.
     pub fn coefficients(&self) -> Vec<f64> {
-        let limit = (self.max_argument)();
-        let square_limit = &limit * &limit * (number_from(1) + exact_number_from(INTERVAL_MARGIN));
-        let half_interval = square_limit / number_from(2);
+        let max_argument = (self.max_argument)();
+        let max_square =
+            &max_argument * &max_argument * (number_from(1) + number_from_f64(INTERVAL_MARGIN));
+        let half_interval = max_square / number_from(2);
         let nodes: Vec<Number> = (0..self.coefficient_count)
             .map(|k| {
                 let angle = Number::pi(PRECISION_BITS) * number_from(2 * k + 1)
@@ -99,31 +101,31 @@ impl Polynomial {
         for (node, difference) in nodes.iter().zip(&differences).rev() {
             // P becomes P * (z - node) + difference.
             let mut next_coefficients = vec![number_from(0); coefficients.len() + 1];
-            for (i, power) in coefficients.iter().enumerate() {
-                next_coefficients[i + 1] += power;
-                next_coefficients[i] -= power * node;
+            for (i, coefficient) in coefficients.iter().enumerate() {
+                next_coefficients[i + 1] += coefficient;
+                next_coefficients[i] -= coefficient * node;
             }
             next_coefficients[0] += difference;
             coefficients = next_coefficients;
         }
         coefficients
             .iter()
-            .map(|power| power.to_f64().value())
+            .map(|coefficient| coefficient.to_f64().value())
             .collect()
     }
 
     /// The largest error of the approximation with these coefficients, relative
-    /// to the function, for arguments up to the limit.
+    /// to the function, for arguments up to the largest.
     pub fn error(&self, coefficients: &[f64]) -> f64 {
-        let limit = (self.max_argument)();
+        let max_argument = (self.max_argument)();
         (1..=SAMPLE_COUNT)
             .map(|i| {
-                let x = &limit * number_from(i) / number_from(SAMPLE_COUNT);
+                let x = &max_argument * number_from(i) / number_from(SAMPLE_COUNT);
                 let z = &x * &x;
                 let sum = coefficients
                     .iter()
                     .rev()
-                    .fold(number_from(0), |sum, c| sum * &z + exact_number_from(*c));
+                    .fold(number_from(0), |sum, c| sum * &z + number_from_f64(*c));
                 let relative_error = (sum - self.target_value(&x)) * power_of(&x, self.exponent)
                     / (self.function)(&x);
                 relative_error.to_f64().value().abs()
@@ -137,6 +139,7 @@ impl Polynomial {
     }
 }
 
+/// x^n, for n of at least 1.
 fn power_of(x: &Number, n: i32) -> Number {
     (1..n).fold(x.clone(), |power, _| power * x)
 }

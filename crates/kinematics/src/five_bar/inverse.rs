@@ -7,7 +7,7 @@ use super::{AssemblyMode, FiveBar, FiveBarPose, double_area};
 use crate::fault::Fault;
 use crate::vector::Vector;
 
-/// The direction in which an arm of crank and coupler is bent.
+/// The direction in which the elbow of an arm, the joint of crank and coupler, points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Elbow {
     /// Away from the other crank, as the robot is built; positive type-1 margin.
@@ -16,7 +16,7 @@ pub enum Elbow {
     Inward,
 }
 
-/// The elbows of both arms. A mechanism cannot change them without passing through a type-1
+/// The elbows of both arms. A mechanism cannot change its working mode without passing through a type-1
 /// singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorkingMode {
@@ -91,6 +91,7 @@ impl FiveBar {
         self.close(mode, left, right)
     }
 
+    /// Solves both arms for a point (mm, own frame).
     fn solve_arms(&self, point: Vector) -> Result<Arms, Fault> {
         if !point.is_finite() {
             return Err(Fault::NotFinite);
@@ -98,7 +99,7 @@ impl FiveBar {
         let from_left_shaft = point - self.left_shaft();
         let from_right_shaft = point - self.right_shaft();
         Ok(Arms {
-            bars: *self,
+            five_bar: *self,
             from_left_shaft,
             from_right_shaft,
             left_cranks: crank_directions(
@@ -119,7 +120,8 @@ impl FiveBar {
 
 /// Both arms, solved for a point.
 struct Arms {
-    bars: FiveBar,
+    /// The five-bar to which the arms belong.
+    five_bar: FiveBar,
     /// Vector from the left shaft to the point, mm.
     from_left_shaft: Vector,
     /// Vector from the right shaft to the point, mm.
@@ -146,8 +148,8 @@ impl Arms {
             Elbow::Outward => self.right_cranks[1],
             Elbow::Inward => self.right_cranks[0],
         };
-        let left_coupler = self.from_left_shaft - left * self.bars.left_crank_length;
-        let right_coupler = self.from_right_shaft - right * self.bars.right_crank_length;
+        let left_coupler = self.from_left_shaft - left * self.five_bar.left_crank_length;
+        let right_coupler = self.from_right_shaft - right * self.five_bar.right_crank_length;
         let assembly_mode = if left_coupler.cross(right_coupler) >= 0.0 {
             AssemblyMode::Ahead
         } else {
@@ -202,7 +204,7 @@ fn crank_directions(
     }
 }
 
-/// `vector`, turned by the angle of `frame` and scaled by the length of `frame`.
+/// Returns `vector`, turned by the angle of `frame` and scaled by the length of `frame`.
 fn rotate(vector: Vector, frame: Vector) -> Vector {
     frame * vector.x + frame.rotated_left() * vector.y
 }

@@ -14,45 +14,45 @@ proptest! {
 
     #[test]
     fn every_loop_that_closes_does_so_within_a_billionth_of_a_millimetre(
-        bars in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
+        five_bar in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
     ) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
-            if let Ok(pose) = bars.forward_in(mode, left, right) {
+            if let Ok(pose) = five_bar.forward_in(mode, left, right) {
                 let [x, y] = loop_residuals(
-                    &bars,
+                    &five_bar,
                     [left, pose.theta_left_coupler(), pose.theta_right_coupler(), right],
                 );
-                prop_assert!(x.hypot(y) < 1e-9, "{mode:?}: the loop is open by {x} {y}");
+                prop_assert!(x.hypot(y) < 1e-9, "{mode:?}: the loop is open by {x} {y} mm");
                 let reach = (pose.end_point - pose.right_tip).length();
-                prop_assert!((reach - bars.right_coupler_length).abs() < 1e-9);
+                prop_assert!((reach - five_bar.right_coupler_length).abs() < 1e-9);
             }
         }
     }
 
     #[test]
     fn the_solver_agrees_with_the_law_of_cosines(
-        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+        five_bar in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
-        match (bars.forward(left, right), end_point_by_cosines(&bars, left, right)) {
+        match (five_bar.forward(left, right), end_point_by_cosines(&five_bar, left, right)) {
             (Ok(pose), Some([x, y])) => {
                 // acos loses half the digits when the triangle is flat.
                 let tolerance = 1e-9 / pose.type2.max(1e-9);
                 prop_assert!((pose.end_point.x - x).hypot(pose.end_point.y - y) < tolerance);
             }
             (Err(Fault::TooFarApart { .. } | Fault::TooClose { .. }), None) => {}
-            (computed, expected) => prop_assert!(false, "{computed:?} against {expected:?}"),
+            (computed, expected) => prop_assert!(false, "{computed:?}, expected {expected:?}"),
         }
     }
 
     #[test]
     fn newtons_method_from_a_perturbed_start_returns_to_the_closed_form(
-        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
-        nudge in [-2.0..2.0, -2.0..2.0f64],
+        five_bar in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+        perturbation in [-2.0..2.0, -2.0..2.0f64],
     ) {
-        if let Ok(pose) = bars.forward(left, right) && pose.type2 > 0.3 {
+        if let Ok(pose) = five_bar.forward(left, right) && pose.type2 > 0.3 {
             let expected = [pose.theta_left_coupler(), pose.theta_right_coupler()];
-            let start = [expected[0] + nudge[0], expected[1] + nudge[1]];
-            let angles = solve_by_newton(&bars, [left, right], start).expect("Newton converges");
+            let start = [expected[0] + perturbation[0], expected[1] + perturbation[1]];
+            let angles = solve_by_newton(&five_bar, [left, right], start).expect("Newton's method converges");
             for (a, b) in expected.iter().zip(angles) {
                 prop_assert!(wrap(a - b).abs() < 1e-9, "{expected:?} {angles:?}");
             }
@@ -61,9 +61,9 @@ proptest! {
 
     #[test]
     fn margins_are_the_sines_of_the_angles_between_their_links(
-        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+        five_bar in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
-        if let Ok(pose) = bars.forward(left, right) {
+        if let Ok(pose) = five_bar.forward(left, right) {
             let (t2, t3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             let sine_of = |degrees: f64| degrees.to_radians().sin();
             prop_assert!((pose.type2 - sine_of(t3 - t2)).abs() < 1e-7);
@@ -74,12 +74,12 @@ proptest! {
 
     #[test]
     fn forward_after_inverse_returns_to_the_point_for_all_four_solutions(
-        bars in any_five_bar(), x in -300.0..300.0f64, y in -300.0..300.0f64,
+        five_bar in any_five_bar(), x in -300.0..300.0f64, y in -300.0..300.0f64,
     ) {
         let point = Vector::new(x, y);
-        if let Ok(solutions) = bars.inverse(point) {
+        if let Ok(solutions) = five_bar.inverse(point) {
             for solution in solutions {
-                let pose = bars.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right).unwrap();
+                let pose = five_bar.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right).unwrap();
                 // The end point is badly determined if the crank tips nearly coincide, and if the
                 // couplers nearly line up.
                 let stiffness = (pose.gap.length() / 1e3).min(pose.type2.abs());
@@ -91,19 +91,19 @@ proptest! {
 
     #[test]
     fn inverse_after_forward_returns_to_the_angles(
-        bars in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
+        five_bar in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
     ) {
-        if let Ok(pose) = bars.forward(left, right) {
+        if let Ok(pose) = five_bar.forward(left, right) {
             let (left_margin, right_margin) = (pose.type1_left(), pose.type1_right());
             // Near a type-1 singularity, the angles change in proportion to the square root of the
             // point's displacement.
             prop_assume!(left_margin.abs() > 1e-2 && right_margin.abs() > 1e-2 && pose.type2 > 1e-3);
-            // If the end point lies on a shaft, that crank's angle is free.
-            prop_assume!((pose.end_point - bars.left_shaft()).length() > 1.0);
-            prop_assume!((pose.end_point - bars.right_shaft()).length() > 1.0);
+            // If the end point lies on a shaft, the angle of that shaft's crank is free.
+            prop_assume!((pose.end_point - five_bar.left_shaft()).length() > 1.0);
+            prop_assume!((pose.end_point - five_bar.right_shaft()).length() > 1.0);
             let elbow_of = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
-            let solution = bars.inverse(pose.end_point).unwrap().into_iter()
-                .find(|a| a.working_mode.left == elbow_of(left_margin) && a.working_mode.right == elbow_of(right_margin)).unwrap();
+            let solution = five_bar.inverse(pose.end_point).unwrap().into_iter()
+                .find(|s| s.working_mode.left == elbow_of(left_margin) && s.working_mode.right == elbow_of(right_margin)).unwrap();
             prop_assert_eq!(solution.assembly_mode, AssemblyMode::Ahead);
             prop_assert!(wrap(solution.theta_left - left).abs() < 1e-9, "{:?}", solution);
             prop_assert!(wrap(solution.theta_right - right).abs() < 1e-9, "{:?}", solution);
@@ -113,7 +113,7 @@ proptest! {
 
 #[test]
 fn the_papers_head_returns_from_point_to_angles_to_point_over_its_whole_workspace() {
-    let (mut max_error, mut reached_count) = (0.0_f64, 0);
+    let (mut max_error, mut reachable_count) = (0.0_f64, 0);
     for i in -90..=90 {
         for j in 0..=90 {
             let point = Vector::new(f64::from(i), f64::from(j));
@@ -123,12 +123,12 @@ fn the_papers_head_returns_from_point_to_angles_to_point_over_its_whole_workspac
             let (left, right) = (solution.theta_left, solution.theta_right);
             let pose = PAPER_HEAD.forward_in(solution.assembly_mode, left, right);
             max_error = max_error.max((pose.unwrap().end_point - point).length());
-            reached_count += 1;
+            reachable_count += 1;
         }
     }
     assert!(max_error < 1e-9, "{max_error} mm");
-    // Half a disc with a radius of 80 mm has 10 000 such points, of which some are too near to a shaft.
-    assert!(reached_count > 5_000, "{reached_count} points");
+    // Half a disc with a radius of 80 mm has 10 000 such points, of which some are too close to a shaft.
+    assert!(reachable_count > 5_000, "{reachable_count} points");
 }
 
 #[test]
@@ -140,12 +140,12 @@ fn coinciding_crank_tips_give_a_fault_or_a_finite_singular_pose() {
         Ok(pose) => assert!(pose.type2.abs() < 1e-12 && pose.end_point.is_finite()),
         Err(fault) => panic!("{fault}"),
     }
-    let bars_without_base = FiveBar {
+    let five_bar_without_base = FiveBar {
         base: 0.0,
         ..PAPER_HEAD
     };
     assert_eq!(
-        bars_without_base.forward(50.0, 50.0),
+        five_bar_without_base.forward(50.0, 50.0),
         Err(Fault::Coincident)
     );
 }
@@ -191,14 +191,20 @@ fn the_messages_of_faults_state_the_distances_and_limits() {
         let fault = PAPER_HEAD.inverse(Vector::new(x, y)).unwrap_err();
         assert_eq!(fault.to_string(), message);
     }
-    let short_bars = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
+    let five_bar_with_short_couplers = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
     assert_eq!(
-        short_bars.forward(180.0, 0.0).unwrap_err().to_string(),
+        five_bar_with_short_couplers
+            .forward(180.0, 0.0)
+            .unwrap_err()
+            .to_string(),
         "the crank tips are 80.000 mm apart, the couplers reach 25.000 mm"
     );
-    let unequal_bars = FiveBar::new([20.0, 30.0, 80.0, 50.0, 30.0]);
+    let five_bar_with_unequal_couplers = FiveBar::new([20.0, 30.0, 80.0, 50.0, 30.0]);
     assert_eq!(
-        unequal_bars.forward(90.0, 90.0).unwrap_err().to_string(),
+        five_bar_with_unequal_couplers
+            .forward(90.0, 90.0)
+            .unwrap_err()
+            .to_string(),
         "the crank tips are 20.000 mm apart, the couplers need 30.000 mm"
     );
     assert_eq!(
@@ -215,10 +221,10 @@ fn a_distance_or_reach_that_overflows_is_reported_as_not_finite() {
         PAPER_HEAD.pose_at_point(far_point).unwrap_err(),
         Fault::NotFinite
     );
-    let endless_bars = FiveBar::new([20.0, 30.0, 50.0, 50.0, f64::INFINITY]);
+    let infinite_five_bar = FiveBar::new([20.0, 30.0, 50.0, 50.0, f64::INFINITY]);
     let near_point = Vector::new(0.0, 50.0);
     assert_eq!(
-        endless_bars.inverse(near_point).unwrap_err(),
+        infinite_five_bar.inverse(near_point).unwrap_err(),
         Fault::NotFinite
     );
 }

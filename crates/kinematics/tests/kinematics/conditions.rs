@@ -15,7 +15,7 @@ fn sine_between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
 }
 
-/// The values of all conditions by name, in the chassis frame; `None` where a loop does not
+/// The values of all conditions by name, in the chassis frame; `None` if a loop does not
 /// close.
 fn expected_values_of(
     robot: &Lizard,
@@ -30,7 +30,7 @@ fn expected_values_of(
     // Crank tips.
     let (p1, p4) = (a1 + cis(t1) * l.l1, a2 + cis(t4) * l.l4);
     let (p8, p5) = (a3 + cis(t8) * l.l9, a4 + cis(t5) * l.l6);
-    // The end points are to the left of the line from p1 to p4, and to the right of that from p5 to p8.
+    // The head point is to the left of the line from p1 to p4, the tail point to the right of that from p5 to p8.
     let head = circle_intersection(p1, l.l2, p4, l.l3)?;
     let tail = circle_intersection(p8, l.l8, p5, l.l7)?;
     // Vectors along the sliders.
@@ -87,7 +87,7 @@ proptest! {
     #![proptest_config(config_with_cases(4096))]
 
     #[test]
-    fn every_condition_has_the_value_of_its_formula_for_robots_without_symmetry(
+    fn every_condition_of_a_robot_without_symmetry_has_the_value_of_its_formula(
         robot in any_lizard(), pose in any_pose(), turns in -2..=2i32,
     ) {
         let pose = pose.map(|angle| angle + 360.0 * f64::from(turns));

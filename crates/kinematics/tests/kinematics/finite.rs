@@ -6,28 +6,30 @@ use proptest::prelude::*;
 use crate::reference::{any_lizard, any_pose, paper_lizard};
 
 /// Ordinary lengths, lengths over the whole range of f64, and lengths near 1e77 and 1e154, whose
-/// fourth and second powers, respectively, begin to overflow.
+/// fourth and second powers, respectively, just overflow.
 fn any_length() -> impl Strategy<Value = f64> {
     prop_oneof![
         5.0..200.0f64,
-        (1.0..10.0f64, -320..308i32).prop_map(|(digits, power)| digits * 10f64.powi(power)),
-        (1.0..1.01f64, 74..79i32).prop_map(|(digits, power)| digits * 10f64.powi(power)),
-        (1.0..1.01f64, 150..156i32).prop_map(|(digits, power)| digits * 10f64.powi(power)),
+        (1.0..10.0f64, -320..308i32)
+            .prop_map(|(mantissa, exponent)| mantissa * 10f64.powi(exponent)),
+        (1.0..1.01f64, 74..79i32).prop_map(|(mantissa, exponent)| mantissa * 10f64.powi(exponent)),
+        (1.0..1.01f64, 150..156i32)
+            .prop_map(|(mantissa, exponent)| mantissa * 10f64.powi(exponent)),
     ]
 }
 
-/// Five-bars with links of similar lengths, most of which close, and five-bars with links of unrelated
+/// Five-five_bar with links of similar lengths, most of which close, and five-bar with links of unrelated
 /// lengths.
 fn any_five_bar() -> impl Strategy<Value = FiveBar> {
-    let any_unit = || prop_oneof![Just(None), any_length().prop_map(Some)];
+    let any_scale = || prop_oneof![Just(None), any_length().prop_map(Some)];
     (
-        any_unit(),
+        any_scale(),
         proptest::array::uniform5(0.2..2.0f64),
         proptest::array::uniform5(any_length()),
     )
-        .prop_map(|(unit, factors, lengths)| {
-            FiveBar::new(match unit {
-                Some(unit) => factors.map(|factor| factor * unit),
+        .prop_map(|(scale, factors, lengths)| {
+            FiveBar::new(match scale {
+                Some(scale) => factors.map(|factor| factor * scale),
                 None => lengths,
             })
         })
@@ -54,32 +56,32 @@ proptest! {
     })]
 
     #[test]
-    fn a_five_bar_of_any_size_has_a_finite_pose_or_a_fault(bars in any_five_bar(), left in any::<f64>(), right in -180.0..180.0f64) {
+    fn a_five_bar_of_any_size_has_a_finite_pose_or_a_fault(five_bar in any_five_bar(), left in any::<f64>(), right in -180.0..180.0f64) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
-            if let Ok(pose) = bars.forward_in(mode, left, right) {
+            if let Ok(pose) = five_bar.forward_in(mode, left, right) {
                 prop_assert!(is_finite_pose(&pose), "{pose:?}");
             }
         }
     }
 
     #[test]
-    fn the_inverse_of_a_five_bar_of_any_size_is_finite_and_right_or_a_fault(
-        bars in any_five_bar(), x in -1.0..1.0f64, y in 0.0..2.0f64, other_length in any_length(),
+    fn the_inverse_of_a_five_bar_of_any_size_is_finite_and_correct_or_a_fault(
+        five_bar in any_five_bar(), x in -1.0..1.0f64, y in 0.0..2.0f64, random_scale in any_length(),
     ) {
-        for unit in [bars.left_crank_length, other_length] {
-            let point = Vector::new(x * unit, y * unit);
-            if let Ok(solutions) = bars.inverse(point) {
+        for scale in [five_bar.left_crank_length, random_scale] {
+            let point = Vector::new(x * scale, y * scale);
+            if let Ok(solutions) = five_bar.inverse(point) {
                 for solution in solutions {
                     prop_assert!(solution.theta_left.is_finite() && solution.theta_right.is_finite());
                     // No intermediate result has underflowed, either: the arm ends at the point.
-                    let tip = bars.left_shaft() + Vector::direction(solution.theta_left) * bars.left_crank_length;
+                    let tip = five_bar.left_shaft() + Vector::direction(solution.theta_left) * five_bar.left_crank_length;
                     let reach = (point - tip).length();
-                    let error = (reach - bars.left_coupler_length).abs();
-                    let size = bars.left_crank_length + bars.left_coupler_length + bars.base;
-                    prop_assert!(error < 1e-6 * size, "{error} of {size}: {solution:?}");
+                    let error = (reach - five_bar.left_coupler_length).abs();
+                    let total_length = five_bar.left_crank_length + five_bar.left_coupler_length + five_bar.base;
+                    prop_assert!(error < 1e-6 * total_length, "{error} of {total_length}: {solution:?}");
                 }
             }
-            if let Ok(pose) = bars.pose_at_point(point) {
+            if let Ok(pose) = five_bar.pose_at_point(point) {
                 prop_assert!(is_finite_pose(&pose));
             }
         }
@@ -97,7 +99,7 @@ proptest! {
     }
 
     #[test]
-    fn an_angle_of_any_size_gives_the_solution_of_its_remainder(
+    fn a_huge_angle_has_the_solution_of_the_angle_modulo_360_degrees(
         robot in any_lizard(), pose in any_pose(), huge in any::<f64>(), servo in 0..4usize,
     ) {
         prop_assume!(huge.is_finite());

@@ -1,4 +1,4 @@
-//! Five-bars or sliders that are computed together in lanes have the same bits as those that are computed alone, and
+//! Five-five_bar or sliders that are computed together in lanes have the same bits as those that are computed alone, and
 //! lanes that do not close do not affect the others.
 
 use lizard_kinematics::{End, Lanes, Lizard, Side, Vector};
@@ -6,6 +6,7 @@ use proptest::prelude::*;
 
 use crate::reference::any_lizard;
 
+/// Number of poses that are computed together.
 const LANE_COUNT: usize = 8;
 
 fn any_poses() -> impl Strategy<Value = Vec<[f64; 4]>> {

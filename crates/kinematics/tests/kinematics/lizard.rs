@@ -4,8 +4,10 @@ use crate::reference::{any_solved_robot, cis, config_with_cases, loop_residuals,
 use lizard_kinematics::{Check, End, Limits, Vector, wrap};
 use proptest::prelude::*;
 
+/// The neutral servo angles, degrees, in servo order.
 const NEUTRAL_POSE: [f64; 4] = [138.590378, 41.409622, 318.590378, 221.409622];
 
+/// The limits of a safe pose of the paper's robot.
 const LIMITS: Limits = Limits {
     type2: 0.3,
     type1: 0.3,
@@ -14,7 +16,7 @@ const LIMITS: Limits = Limits {
     stroke_max: 45.0,
 };
 
-/// The messages of the limits that the paper's robot breaks in a pose.
+/// The messages for the limits that the paper's robot violates in a pose.
 fn violation_messages(pose: [f64; 4]) -> Vec<String> {
     let solution = paper_lizard().solve(&pose.into()).unwrap();
     let violations = LIMITS.violations(&solution);
@@ -104,7 +106,7 @@ fn the_angles_for_two_points_put_head_and_tail_there() {
 }
 
 #[test]
-fn each_broken_limit_has_its_message() {
+fn each_violated_limit_has_its_message() {
     let [_, a2, a3, a4] = NEUTRAL_POSE;
     let leg_message = "margin leg_lf 0.070 is below 0.300";
     let arm_message = "margin type1_a1 -0.317 is below 0.300";
@@ -124,7 +126,7 @@ fn each_broken_limit_has_its_message() {
 }
 
 #[test]
-fn a_pose_with_nan_is_infeasible_and_names_the_mechanism() {
+fn a_pose_with_nan_is_infeasible_and_the_error_names_the_mechanism() {
     let result = paper_lizard().solve(&[f64::NAN, 41.0, 318.0, 221.0].into());
     assert_eq!(
         result.unwrap_err().to_string(),
@@ -133,14 +135,14 @@ fn a_pose_with_nan_is_infeasible_and_names_the_mechanism() {
 }
 
 #[test]
-fn there_are_ten_margins_and_the_least_is_that_of_a_leg_at_neutral() {
+fn there_are_ten_margins_and_at_neutral_the_smallest_is_that_of_a_leg() {
     let margins = paper_lizard().margins(&NEUTRAL_POSE.into()).unwrap();
     let names: Vec<_> = margins.iter().map(|(check, _)| check.name()).collect();
     assert_eq!(
         names.join(" "),
         "type2_head type2_tail type1_a1 type1_a2 type1_a3 type1_a4 leg_lf leg_rf leg_rh leg_lh"
     );
-    let (least_check, value) = margins.min();
-    assert!(Check::LEG.contains(&least_check));
+    let (smallest_check, value) = margins.min();
+    assert!(Check::LEG.contains(&smallest_check));
     assert!((value - 41.409622f64.to_radians().sin()).abs() < 1e-12);
 }

@@ -37,53 +37,57 @@ pub fn paper_lizard() -> Lizard {
 
 /// The x and y residuals of the loop equation l1 cis(theta1) + l2 cis(theta2) - l3 cis(theta3) - l4 cis(theta4) - l0,
 /// mm, at theta1 to theta4 in degrees.
-pub fn loop_residuals(bars: &FiveBar, degrees: [f64; 4]) -> [f64; 2] {
+pub fn loop_residuals(five_bar: &FiveBar, degrees: [f64; 4]) -> [f64; 2] {
     let [t1, t2, t3, t4] = degrees.map(|d| d * PI / 180.0);
-    let (l1, l2) = (bars.left_crank_length, bars.left_coupler_length);
-    let (l3, l4) = (bars.right_coupler_length, bars.right_crank_length);
+    let (l1, l2) = (five_bar.left_crank_length, five_bar.left_coupler_length);
+    let (l3, l4) = (five_bar.right_coupler_length, five_bar.right_crank_length);
     [
-        l1 * t1.cos() + l2 * t2.cos() - l3 * t3.cos() - l4 * t4.cos() - bars.base,
+        l1 * t1.cos() + l2 * t2.cos() - l3 * t3.cos() - l4 * t4.cos() - five_bar.base,
         l1 * t1.sin() + l2 * t2.sin() - l3 * t3.sin() - l4 * t4.sin(),
     ]
 }
 
 /// theta2 and theta3 (degrees) by Newton's method, at the angles of both cranks and from `start` (degrees); `None` if
 /// it does not converge.
-pub fn solve_by_newton(bars: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
+pub fn solve_by_newton(five_bar: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
     let [mut t2, mut t3] = start;
     for _ in 0..60 {
-        let [fx, fy] = loop_residuals(bars, [cranks[0], t2, t3, cranks[1]]);
+        let [fx, fy] = loop_residuals(five_bar, [cranks[0], t2, t3, cranks[1]]);
         if fx.hypot(fy) < 1e-11 {
             return Some([t2, t3]);
         }
         let (a, b) = (t2 * PI / 180.0, t3 * PI / 180.0);
-        let (l2, l3) = (bars.left_coupler_length, bars.right_coupler_length);
+        let (l2, l3) = (five_bar.left_coupler_length, five_bar.right_coupler_length);
         let det = l2 * l3 * (a - b).sin();
         let da = (l3 * b.cos() * fx + l3 * b.sin() * fy) / det;
         let db = (l2 * a.cos() * fx + l2 * a.sin() * fy) / det;
         t2 += da.clamp(-0.5, 0.5) * 180.0 / PI;
         t3 += db.clamp(-0.5, 0.5) * 180.0 / PI;
     }
-    let [fx, fy] = loop_residuals(bars, [cranks[0], t2, t3, cranks[1]]);
+    let [fx, fy] = loop_residuals(five_bar, [cranks[0], t2, t3, cranks[1]]);
     (fx.hypot(fy) < 1e-10).then_some([t2, t3])
 }
 
 /// The end point, to the left of the line from the left crank tip to the right one, by the law of cosines; `None` if
 /// the couplers' circles do not intersect.
-pub fn end_point_by_cosines(bars: &FiveBar, theta_left: f64, theta_right: f64) -> Option<[f64; 2]> {
+pub fn end_point_by_cosines(
+    five_bar: &FiveBar,
+    theta_left: f64,
+    theta_right: f64,
+) -> Option<[f64; 2]> {
     let (a, b) = (theta_left * PI / 180.0, theta_right * PI / 180.0);
     let (half_base, l1, l4) = (
-        bars.base / 2.0,
-        bars.left_crank_length,
-        bars.right_crank_length,
+        five_bar.base / 2.0,
+        five_bar.left_crank_length,
+        five_bar.right_crank_length,
     );
     let left = Vector::new(l1 * a.cos() - half_base, l1 * a.sin());
     let right = Vector::new(l4 * b.cos() + half_base, l4 * b.sin());
     let point = circle_intersection(
         left,
-        bars.left_coupler_length,
+        five_bar.left_coupler_length,
         right,
-        bars.right_coupler_length,
+        five_bar.right_coupler_length,
     )?;
     Some([point.x, point.y])
 }

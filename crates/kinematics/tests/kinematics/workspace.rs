@@ -25,41 +25,41 @@ proptest! {
     })]
 
     #[test]
-    fn the_workspace_consists_of_the_reachable_points(bars in any_symmetrical_five_bar()) {
-        let workspace = Workspace::of(&bars);
+    fn the_workspace_consists_of_the_reachable_points(five_bar in any_symmetrical_five_bar()) {
+        let workspace = Workspace::of(&five_bar);
         let outer_radius = workspace.outer_radius;
         let cells_per_side = 400;
         let cell_width = 2.0 * outer_radius / f64::from(cells_per_side);
-        let mut inside_count = 0;
+        let mut reachable_count = 0;
         for i in 0..cells_per_side {
             for j in 0..cells_per_side {
                 let coordinate_of = |k: i32| -outer_radius + (f64::from(k) + 0.5) * cell_width;
                 let point = Vector::new(coordinate_of(i), coordinate_of(j));
-                let is_reached = bars.inverse(point).is_ok();
-                prop_assert_eq!(workspace.contains(point), is_reached);
-                inside_count += i32::from(is_reached);
+                let is_reachable = five_bar.inverse(point).is_ok();
+                prop_assert_eq!(workspace.contains(point), is_reachable);
+                reachable_count += i32::from(is_reachable);
             }
         }
         // The counted area is off by at most about one cell for each cell along the rim of the workspace.
-        let counted_area = f64::from(inside_count) * cell_width * cell_width;
+        let counted_area = f64::from(reachable_count) * cell_width * cell_width;
         prop_assert!((counted_area - workspace.area()).abs() < 6.0 * outer_radius * cell_width, "{counted_area} {}", workspace.area());
     }
 
     #[test]
     fn the_inscribed_circle_is_as_large_as_the_unreachable_points_allow(
-        bars in any_symmetrical_five_bar(),
+        five_bar in any_symmetrical_five_bar(),
     ) {
-        let workspace = Workspace::of(&bars);
+        let workspace = Workspace::of(&five_bar);
         let radius = workspace.inscribed_circle().map_or(0.0, |circle| circle.radius);
-        let (clearance, cell_width) = max_clearance_on_grid(&bars);
+        let (clearance, cell_width) = max_clearance_on_grid(&five_bar);
         prop_assert!((radius - clearance).abs() <= 1.5 * cell_width, "{radius} {clearance} cell {cell_width}");
     }
 
     #[test]
     fn the_inscribed_circle_touches_the_rim_and_none_is_larger(
-        bars in any_symmetrical_five_bar(), x in -1.0..1.0f64, y in -1.0..1.0f64,
+        five_bar in any_symmetrical_five_bar(), x in -1.0..1.0f64, y in -1.0..1.0f64,
     ) {
-        let workspace = Workspace::of(&bars);
+        let workspace = Workspace::of(&five_bar);
         let clearance_of = |point: Vector| {
             [-workspace.half_base, workspace.half_base].into_iter().map(|shaft| {
                 let distance = (point - Vector::new(shaft, 0.0)).length();
@@ -79,20 +79,20 @@ proptest! {
 
     #[test]
     fn the_conditioning_index_lies_between_0_and_1_and_does_not_depend_on_scale(
-        bars in any_symmetrical_five_bar(), x in -100.0..100.0, y in 0.0..100.0f64, scale in 0.01..100.0f64,
+        five_bar in any_symmetrical_five_bar(), x in -100.0..100.0, y in 0.0..100.0f64, scale in 0.01..100.0f64,
     ) {
-        let (crank, coupler) = (bars.left_crank_length, bars.left_coupler_length);
-        let large_bars = [bars.base, crank, coupler, coupler, crank].map(|length| length * scale);
-        let large_bars = FiveBar::new(large_bars);
-        if let Ok(solutions) = bars.inverse(Vector::new(x, y)) {
+        let (crank, coupler) = (five_bar.left_crank_length, five_bar.left_coupler_length);
+        let scaled_lengths = [five_bar.base, crank, coupler, coupler, crank].map(|length| length * scale);
+        let scaled_five_bar = FiveBar::new(scaled_lengths);
+        if let Ok(solutions) = five_bar.inverse(Vector::new(x, y)) {
             for solution in solutions {
-                let (Ok(pose), Ok(large_pose)) = (
-                    bars.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right),
-                    large_bars.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right),
+                let (Ok(pose), Ok(scaled_pose)) = (
+                    five_bar.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right),
+                    scaled_five_bar.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right),
                 ) else { continue };
                 prop_assert!((0.0..=1.0 + 1e-12).contains(&pose.lci()));
                 prop_assume!(pose.gap.length() > 1e-3);
-                prop_assert!((pose.lci() - large_pose.lci()).abs() < 1e-6);
+                prop_assert!((pose.lci() - scaled_pose.lci()).abs() < 1e-6);
             }
         }
     }
@@ -100,29 +100,29 @@ proptest! {
 
 /// The largest distance of a reachable grid cell from the nearest unreachable point, and the width of a cell, mm.
 /// The shafts count as unreachable, even if an arm with equal links can be folded onto its shaft.
-fn max_clearance_on_grid(bars: &FiveBar) -> (f64, f64) {
+fn max_clearance_on_grid(five_bar: &FiveBar) -> (f64, f64) {
     const CELLS_PER_SIDE: usize = 120;
-    let reach = bars.left_crank_length + bars.left_coupler_length;
+    let reach = five_bar.left_crank_length + five_bar.left_coupler_length;
     let cell_width = 2.2 * reach / CELLS_PER_SIDE as f64;
     let coordinate_of = |k: usize| (k as f64 + 0.5) * cell_width - 1.1 * reach;
     let point_of = |i: usize, j: usize| Vector::new(coordinate_of(i), coordinate_of(j));
-    let reached_column_of = |i| {
+    let reachable_column_of = |i| {
         (0..CELLS_PER_SIDE)
-            .map(|j| bars.inverse(point_of(i, j)).is_ok())
+            .map(|j| five_bar.inverse(point_of(i, j)).is_ok())
             .collect()
     };
-    let is_inside: Vec<Vec<bool>> = (0..CELLS_PER_SIDE).map(reached_column_of).collect();
-    let mut rim_points = vec![bars.left_shaft(), bars.right_shaft()];
+    let is_reachable: Vec<Vec<bool>> = (0..CELLS_PER_SIDE).map(reachable_column_of).collect();
+    let mut rim_points = vec![five_bar.left_shaft(), five_bar.right_shaft()];
     for i in 1..CELLS_PER_SIDE - 1 {
         for j in 1..CELLS_PER_SIDE - 1 {
             let neighbours = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)];
-            if !is_inside[i][j] && neighbours.into_iter().any(|(i, j)| is_inside[i][j]) {
+            if !is_reachable[i][j] && neighbours.into_iter().any(|(i, j)| is_reachable[i][j]) {
                 rim_points.push(point_of(i, j));
             }
         }
     }
     let mut max_clearance_squared = 0.0_f64;
-    for (i, column) in is_inside.iter().enumerate() {
+    for (i, column) in is_reachable.iter().enumerate() {
         for j in (0..CELLS_PER_SIDE).filter(|&j| column[j]) {
             let squares = rim_points
                 .iter()
@@ -136,9 +136,9 @@ fn max_clearance_on_grid(bars: &FiveBar) -> (f64, f64) {
 
 #[test]
 fn with_a_wide_base_the_inscribed_circle_is_centred_between_the_shafts() {
-    // Crank and coupler are .5 and .75 times half the base.
-    let bars = FiveBar::new([20.0, 5.0, 7.5, 7.5, 5.0]);
-    let circle = Workspace::of(&bars).inscribed_circle().unwrap();
+    // Crank and coupler are 0.5 and 0.75 times half the base.
+    let five_bar = FiveBar::new([20.0, 5.0, 7.5, 7.5, 5.0]);
+    let circle = Workspace::of(&five_bar).inscribed_circle().unwrap();
     assert_eq!((circle.centre, circle.radius), (Vector::new(0.0, 0.0), 2.5));
 }
 
