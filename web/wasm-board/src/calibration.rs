@@ -25,6 +25,7 @@ pub(crate) fn to_js(value: impl Serialize) -> JsValue {
 
 /// Converts a calibration from JavaScript.
 pub(crate) fn from_js(calibration: &JsValue) -> Result<Calibration, JsError> {
-    let text = JSON::stringify(calibration).map_err(|_| JsError::new("this is no JSON"))?;
+    let text = JSON::stringify(calibration)
+        .map_err(|_| JsError::new("the calibration cannot be written as JSON"))?;
     Ok(serde_json::from_str(&String::from(text))?)
 }

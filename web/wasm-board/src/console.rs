@@ -13,7 +13,8 @@ const CONSOLE: &str = "
 export interface Console {
   /** Sends a line; returns the answer as `text`, and the `#` lines that came before it. Rejects if there is no answer. */
   ask(line: string): Promise<{ notes: string[]; text: string }>;
-  wait(time: number): Promise<void>;
+  /** Waits for `durationMs` by the robot's clock. */
+  wait(durationMs: number): Promise<void>;
 }
 ";
 
@@ -27,10 +28,10 @@ extern "C" {
     #[wasm_bindgen(method, catch)]
     async fn ask(this: &Console, line: &str) -> Result<JsValue, JsValue>;
     #[wasm_bindgen(method, catch)]
-    async fn wait(this: &Console, time: f64) -> Result<JsValue, JsValue>;
+    async fn wait(this: &Console, duration_ms: f64) -> Result<JsValue, JsValue>;
 }
 
-/// The robot at the other end of the page's connection. Its errors are those that the page throws.
+/// The robot at the other end of the page's connection. Its errors are the values that the page throws.
 #[derive(Debug)]
 pub(crate) struct JsConsole(pub(crate) Console);
 
@@ -73,7 +74,7 @@ pub(crate) fn error_to_js(error: ConsoleError<JsValue>) -> JsValue {
     }
 }
 
-/// Makes an error of JavaScript with this message.
+/// Creates a JavaScript error with this message.
 pub(crate) fn js_error(text: &str) -> JsValue {
     JsError::new(text).into()
 }

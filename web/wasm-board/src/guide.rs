@@ -1,4 +1,4 @@
-//! The class with which JavaScript calibrates a robot.
+//! The JavaScript class that calibrates a robot.
 #![allow(clippy::missing_errors_doc)] // each rejects with the page's own error, or with the robot's refusal as a sentence
 
 use lizard_calibrate::{SCALE_TURNS_DEG, SIGN_TURNS_DEG, SendError};
@@ -110,13 +110,13 @@ impl Guide {
         self.0.save().await.map_err(error_to_js)
     }
 
-    /// Makes the robot stand, and restores the calibration as it was at the beginning or at the last save; returns true
-    /// if another one was in effect.
+    /// Makes the robot stand, and restores the calibration that was in effect at the start or at the last save; returns
+    /// true if that changed anything.
     pub async fn restore(&mut self) -> Result<bool, JsValue> {
         self.0.restore().await.map_err(error_to_js)
     }
 
-    /// Replaces the calibration without saving it. If the robot refuses the new one, it gets the previous one again.
+    /// Replaces the calibration without saving it. If the robot refuses the new one, the previous one is restored.
     pub async fn replace(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Calibration")] calibration: JsValue,

@@ -11,13 +11,13 @@ use wasm_bindgen::prelude::*;
 const LINE: &str = "
 /** A serial line to a board. Times are in ms by the board's clock: a simulated board may run slower than real time. */
 export interface Line {
-  /** Resets the board and sets the speed of the line. */
+  /** Resets the board and sets the baud rate. */
   reset(baud: number): Promise<void>;
   write(bytes: Uint8Array): Promise<void>;
-  /** Returns `count` bytes, or fewer if no more arrive in the time. */
-  read(count: number, time: number): Promise<Uint8Array>;
-  /** Waits for the time and drops all bytes received until then. */
-  discard(time: number): Promise<void>;
+  /** Returns `count` bytes, or fewer if they have not arrived within `timeoutMs`. */
+  read(count: number, timeoutMs: number): Promise<Uint8Array>;
+  /** Waits for `durationMs` and discards all bytes received until then. */
+  discard(durationMs: number): Promise<void>;
 }
 ";
 
@@ -33,9 +33,9 @@ extern "C" {
     #[wasm_bindgen(method, catch)]
     async fn write(this: &Line, bytes: Uint8Array) -> Result<JsValue, JsValue>;
     #[wasm_bindgen(method, catch)]
-    async fn read(this: &Line, count: u32, time: f64) -> Result<JsValue, JsValue>;
+    async fn read(this: &Line, count: u32, timeout_ms: f64) -> Result<JsValue, JsValue>;
     #[wasm_bindgen(method, catch)]
-    async fn discard(this: &Line, time: f64) -> Result<JsValue, JsValue>;
+    async fn discard(this: &Line, duration_ms: f64) -> Result<JsValue, JsValue>;
 }
 
 /// The board at the other end of the page's serial line.
@@ -52,8 +52,8 @@ impl Board for JsBoard {
         result.map(drop).map_err(board_error)
     }
 
-    async fn read(&mut self, bytes: &mut [u8], time: Duration) -> Result<usize, BoardError> {
-        let result = self.0.read(bytes.len() as u32, milliseconds(time)).await;
+    async fn read(&mut self, bytes: &mut [u8], timeout: Duration) -> Result<usize, BoardError> {
+        let result = self.0.read(bytes.len() as u32, milliseconds(timeout)).await;
         let received = Uint8Array::new(&result.map_err(board_error)?);
         let count = received.length() as usize;
         received.copy_to(&mut bytes[..count]);
@@ -70,10 +70,10 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1000.0
 }
 
-/// Converts an error of the page's line; keeps the page's message.
+/// Converts an error that the page's line throws; keeps its message.
 fn board_error(error: JsValue) -> BoardError {
     BoardError::Other(match error.dyn_into::<Error>() {
         Ok(error) => error.message().into(),
-        Err(other) => format!("{other:?}"),
+        Err(value) => format!("{value:?}"),
     })
 }

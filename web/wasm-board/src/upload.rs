@@ -1,4 +1,5 @@
-//! The upload of firmware and robot to a board from a browser: with the page order and the messages of `lizard flash`.
+//! The upload of firmware and robot to a board from a browser, with the order of flash pages and the messages of
+//! `lizard flash`.
 
 use js_sys::Function;
 use lizard_core::numbers::mark::Mark;
@@ -16,7 +17,7 @@ pub fn image_of(hex: &str) -> Result<Vec<u8>, JsError> {
     Ok(Image::from_hex(hex)?.bytes().to_vec())
 }
 
-/// True if an image is this firmware, of any version.
+/// True if an image contains this firmware, in any version.
 #[wasm_bindgen(js_name = isLizard)]
 pub fn is_lizard(image: &[u8]) -> bool {
     Mark::find(image).is_some()
@@ -41,8 +42,8 @@ pub enum Board {
 }
 
 /// Writes an image from address 0 on, or only a robot's section, to a board, reads it back and starts the program.
-/// `report` gets the progress: `reading`, `writing` or `verifying`, the number of finished pages and the number of
-/// all; or `again`, if the board is reset for another attempt.
+/// `report` gets the progress: `reading`, `writing` or `verifying`, the number of finished pages and their total
+/// number; or `again` if the board is reset for another attempt.
 ///
 /// # Errors
 /// Rejects with a sentence for the user that says what the flash holds now.
@@ -53,7 +54,7 @@ pub async fn upload(
     #[wasm_bindgen(js_name = isRobotAlone)] is_robot_alone: bool,
     board: Board,
     #[wasm_bindgen(
-        unchecked_param_type = "(step: 'reading' | 'writing' | 'verifying' | 'again', done: number, of: number) => void"
+        unchecked_param_type = "(step: 'reading' | 'writing' | 'verifying' | 'again', done: number, total: number) => void"
     )]
     report: Function,
 ) -> Result<(), JsError> {
@@ -69,17 +70,17 @@ pub async fn upload(
         },
         may_be_nano: false,
     };
-    let report = |step: &str, done: usize, of: usize| {
+    let report = |step: &str, done: usize, total: usize| {
         // An error of the page is no reason to stop in the middle of an upload.
-        let _ = report.call3(&JsValue::NULL, &step.into(), &done.into(), &of.into());
+        let _ = report.call3(&JsValue::NULL, &step.into(), &done.into(), &total.into());
     };
     let mut loader = Loader::new(JsBoard(line));
     lizard_upload::upload(&mut loader, &image, target, &mut |event| match event {
         Event::Found(_) => {}
         Event::Retry { .. } => report("again", 0, 1),
-        Event::Progress(Step::Reading, done, of) => report("reading", done, of),
-        Event::Progress(Step::Writing, done, of) => report("writing", done, of),
-        Event::Progress(Step::Verifying, done, of) => report("verifying", done, of),
+        Event::Progress(Step::Reading, done, total) => report("reading", done, total),
+        Event::Progress(Step::Writing, done, total) => report("writing", done, total),
+        Event::Progress(Step::Verifying, done, total) => report("verifying", done, total),
     })
     .await?;
     Ok(())
@@ -88,7 +89,7 @@ pub async fn upload(
 /// Resets a board, finds its model by its boot loader, and starts its program; returns `UNO` or `Nano`.
 ///
 /// # Errors
-/// Rejects with a sentence for the user if the board is no UNO or Nano, or does not answer.
+/// Rejects with a sentence for the user if the board is neither a UNO nor a Nano, or does not answer.
 #[wasm_bindgen]
 pub async fn identify(line: Line) -> Result<String, JsError> {
     let mut loader = Loader::new(JsBoard(line));

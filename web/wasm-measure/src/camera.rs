@@ -24,9 +24,9 @@ impl Refused {
 /// A tag in a picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Tsify)]
 pub struct TagEntry {
-    /// Its id on the sheet.
+    /// The tag's id on the sheet.
     pub id: usize,
-    /// Its corners, px: those that are top left, top right, bottom right and bottom left on the printed sheet.
+    /// The tag's corners, px: those that are top left, top right, bottom right and bottom left on the printed sheet.
     #[tsify(type = "[Pixel, Pixel, Pixel, Pixel]")]
     pub corners: [[f64; 2]; 4],
 }
@@ -43,7 +43,7 @@ pub struct Asked {
     /// Measured length, mm, of the line on the sheet that should be 100 mm long.
     pub ruler: f64,
     /// The walks to measure. If empty, the film is split where the robot rests, and each walk is assigned the gait
-    /// that it clearly resembles.
+    /// that it matches.
     pub walks: Vec<AskedWalk>,
 }
 
@@ -82,7 +82,7 @@ impl Camera {
             .collect()
     }
 
-    /// Adds the next picture, taken at `seconds`, to the film, and returns its tags.
+    /// Adds the next picture, taken at `seconds` on the film's clock, and returns its tags.
     ///
     /// # Errors
     /// Fails if the picture does not belong to the film, or shows a tag twice.

@@ -1,4 +1,4 @@
-//! The class with which JavaScript films the robot and measures its gaits.
+//! The JavaScript class that films the robot and measures its gaits.
 
 use js_sys::JSON;
 use lizard_film::Picture;
@@ -15,7 +15,7 @@ export type Pixel = [number, number];
 /** A component of a cycle's movement: mm or deg. */
 export interface Part {
   mean: number;
-  /** Standard deviation of the single cycles. */
+  /** Standard deviation of a single cycle. */
   sd: number;
   /** Standard error of the mean. */
   error: number;
@@ -33,7 +33,7 @@ export interface Report {
   forward: Part;
   left: Part;
   turn: Part;
-  /** The movement per cycle that MuJoCo computes with ideal servos: mm ahead, mm to the left, deg; known only for some robots. */
+  /** The movement per cycle that MuJoCo computes with ideal servos: mm forward, mm to the left, deg counter-clockwise; known only for some robots. */
   mujoco?: [number, number, number];
   range?: Range;
 }
@@ -67,15 +67,15 @@ pub struct PageCamera(Camera);
 
 #[wasm_bindgen(js_class = Camera)]
 impl PageCamera {
-    /// Begins a film.
+    /// Creates a camera with an empty film.
     #[must_use]
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Finds the tags in a picture that was taken at `seconds`; if `is_kept`, adds the picture to the film. A grey
-    /// picture has one byte per pixel, a picture in colour has four.
+    /// Finds the tags in a picture that was taken at `seconds` on the film's clock; if `is_kept`, adds the picture to
+    /// the film. A grey picture has one byte per pixel, a colour picture has four.
     ///
     /// # Errors
     /// Fails if the picture is incomplete, or if it is to be kept but does not belong to the film or shows a tag twice.
@@ -106,14 +106,15 @@ impl PageCamera {
     #[wasm_bindgen(unchecked_return_type = "Results")]
     pub fn measure(
         &mut self,
-        #[wasm_bindgen(unchecked_param_type = "Asked")] asked: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "Asked")] request: &JsValue,
     ) -> Result<JsValue, JsError> {
-        let json = JSON::stringify(asked).map_err(|_| JsError::new("this is no JSON"))?;
+        let json = JSON::stringify(request)
+            .map_err(|_| JsError::new("the request cannot be written as JSON"))?;
         let request = serde_json::from_str(&String::from(json))?;
         Ok(to_js(self.0.measure(&request)?))
     }
 
-    /// Returns the sheet of tags as PDF, for paper of 11 x 8.5 inches if `is_letter`, else for A4.
+    /// Returns the sheet of tags as PDF, for US Letter paper if `is_letter`, otherwise for A4.
     #[must_use]
     pub fn sheet(is_letter: bool) -> Vec<u8> {
         let paper = if is_letter { Paper::Letter } else { Paper::A4 };

@@ -1,7 +1,7 @@
 //! The measurement of a walking robot by the page's camera, with the same analysis and report as `lizard measure`.
 //!
 //! A browser hands over pictures one by one, with their times, and gets back the tags that each of them shows.
-//! Afterwards it asks for the report of the gaits that the robot has walked. [`Camera`] holds the film; [`PageCamera`]
+//! Afterwards it requests the report of the gaits that the robot has walked. [`Camera`] holds the film; [`PageCamera`]
 //! is its class for JavaScript. This crate is a WebAssembly module of its own, which the page loads only when needed.
 //!
 //! # When not to use it

@@ -1,4 +1,4 @@
-//! The class with which JavaScript gets a robot's parts. A refusal is thrown as a [`Refused`].
+//! The JavaScript class that makes a robot's parts. A refusal is thrown as a [`Refused`].
 
 use js_sys::{Function, JSON};
 use serde::Serialize;
@@ -15,7 +15,7 @@ export interface Meeting {
   second: string;
   /** Their distance, mm; negative if they overlap. */
   mm: number;
-  /** Servo angles at which they do, deg; null if they do so at every pose, or if no such pose is known. */
+  /** Servo angles at which they overlap or come too close, deg; null if they do so in every pose, or if no such pose is known. */
   pose: number[] | null;
 }
 ";
@@ -86,28 +86,28 @@ impl Parts {
     }
 
     /// Proves that no two parts overlap or come too close; returns the least distance, mm, or undefined if no pair was
-    /// checked. Calls `progress` with the number of finished checks and the number of all.
+    /// checked. Calls `progress` with the number of finished checks and their total number.
     ///
     /// # Errors
     /// Returns the two parts that overlap or come too close.
     pub fn prove(
         &self,
-        #[wasm_bindgen(unchecked_param_type = "(done: number, all: number) => void")]
+        #[wasm_bindgen(unchecked_param_type = "(done: number, total: number) => void")]
         progress: &Function,
     ) -> Result<Option<f64>, Refused> {
-        let proof = self.0.prove(|done, all| {
-            // An error of the callback is ignored: a page that is no longer interested terminates the worker.
-            let _ = progress.call2(&JsValue::NULL, &done.into(), &all.into());
+        let proof = self.0.prove(|done, total| {
+            // An error of the callback is ignored: a page that no longer needs the proof terminates the worker.
+            let _ = progress.call2(&JsValue::NULL, &done.into(), &total.into());
         })?;
         Ok(proof.least)
     }
 
-    /// Makes one group of files; `number` is the group's index, below `ModelEntry.files`.
+    /// Makes one group of files; `group` is the group's index, below `ModelEntry.files`.
     ///
     /// # Errors
     /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
-    pub fn files(&self, number: usize) -> Result<Vec<PartFile>, Refused> {
-        let files = self.0.files(number)?.into_iter();
+    pub fn files(&self, group: usize) -> Result<Vec<PartFile>, Refused> {
+        let files = self.0.files(group)?.into_iter();
         Ok(files
             .map(|file| PartFile {
                 path: file.path,

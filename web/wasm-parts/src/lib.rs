@@ -1,7 +1,7 @@
 //! The robot's parts for the page: the same solids that `lizard parts` writes.
 //!
-//! A browser that shows the robot in 3D needs the triangles once and then, for each picture, the
-//! place of every body. Bodies that move together share a mount, so a pose is one rotation and one
+//! A browser that shows the robot in 3D needs the triangles once and then, for each frame, the
+//! pose of every body. Bodies that move together share a mount, so a pose is one rotation and one
 //! translation in the plane for each mount, however many parts there are. [`Model`] computes the
 //! triangles, the poses, the files to print, to cut and to read, and the proof that no two parts
 //! come too close; [`Parts`] is its class for JavaScript. This crate is a WebAssembly module of its

@@ -15,7 +15,7 @@ use tsify::Tsify;
 pub struct Refused {
     /// The reason, as a message.
     pub refused: String,
-    /// The two parts that overlap or come too close; `None` if the reason is another one.
+    /// The two parts that overlap or come too close; `None` if there is another reason.
     #[tsify(type = "Meeting | null")]
     pub meeting: Option<CollidingPair>,
 }
@@ -133,7 +133,7 @@ impl Model {
     #[must_use]
     pub fn entry(&self) -> ModelEntry {
         let mut sole_z: f64 = 0.0;
-        let mut next_bought = self.needed_parts().count();
+        let mut next_bought_index = self.needed_parts().count();
         let bodies = self.assembly.bodies().iter().map(|body| {
             sole_z = sole_z.min(body.z()[0]);
             let has_body = |part: &Part| part.body_names.contains(&body.name);
@@ -141,8 +141,8 @@ impl Model {
             let motion = part.map(|part| self.parts[part].print_to_body(body));
             let step = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {
-                next_bought += 1;
-                next_bought - 1
+                next_bought_index += 1;
+                next_bought_index - 1
             });
             BodyEntry {
                 name: body.name.clone(),
@@ -192,7 +192,7 @@ impl Model {
         index.expect("every body's mount is in the list")
     }
 
-    /// Returns the place of every mount in the chassis frame: x and y of its origin, mm, and the unit vector of its x
+    /// Returns the pose of every mount in the chassis frame: x and y of its origin, mm, and the unit vector of its x
     /// axis. `angles` are those of the servos (deg, chassis frame), `lags` those of the legs behind them (deg, foot
     /// forward positive). `None` if a loop does not close.
     #[must_use]
@@ -237,17 +237,17 @@ impl Model {
     }
 
     /// Makes one group of the files that `lizard parts` writes: the files of one part, or, as the last group, the
-    /// bill of materials and the guide. Empty for a larger `number`.
+    /// bill of materials and the guide. Empty for a larger `group`.
     ///
     /// # Errors
     /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
-    pub fn files(&self, number: usize) -> Result<Vec<File>, Refused> {
+    pub fn files(&self, group: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
         let count = self.ordered_parts().count();
-        if let Some(part) = self.ordered_parts().nth(number) {
+        if let Some(part) = self.ordered_parts().nth(group) {
             return Ok(part_files(&part, robot.parts().kerf)?);
         }
-        if number > count {
+        if group > count {
             return Ok(Vec::new());
         }
         let pose = robot
@@ -258,7 +258,7 @@ impl Model {
         Ok(documents(&self.assembly, &bill, &pose)?)
     }
 
-    /// Proves that no two parts overlap or come too close at any pose that the guard accepts.
+    /// Proves that no two parts overlap or come too close in any pose that the guard accepts.
     ///
     /// # Errors
     /// Returns the two parts that overlap most, or else come closest.
@@ -286,12 +286,12 @@ fn matrix_of(motion: Option<PrintToBody>) -> [f64; 16] {
         frame: Placement::CHASSIS,
     };
     let PrintToBody {
-        is_flipped: flipped,
+        is_flipped,
         lift,
         frame,
     } = motion.unwrap_or(identity);
     let Placement { origin, x_axis } = frame;
-    let z_sign = if flipped { -1.0 } else { 1.0 };
+    let z_sign = if is_flipped { -1.0 } else { 1.0 };
     let y_axis = x_axis.rotated_left() * z_sign;
     [
         x_axis.x, x_axis.y, 0.0, 0.0, y_axis.x, y_axis.y, 0.0, 0.0, 0.0, 0.0, z_sign, 0.0,

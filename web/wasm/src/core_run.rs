@@ -10,9 +10,9 @@ use lizard_robot::{CoreRobot, healthy_rail_mv};
 use serde::Serialize;
 use tsify::Tsify;
 
-/// Number of steps of the analog-to-digital converter.
-const CONVERTER_STEP_COUNT: f64 = 1024.0;
-/// Voltage of the chip's internal reference, V.
+/// Number of codes of the analogue-to-digital converter.
+const ADC_FULL_SCALE: f64 = 1024.0;
+/// Voltage of the chip's bandgap reference, V.
 const REFERENCE_VOLTS: f64 = 1.1;
 
 /// The output of the core in one frame.
@@ -27,21 +27,21 @@ pub struct CoreFrame {
 /// A robot's core in operation.
 pub struct CoreRun {
     running_robot: RunningRobot,
-    /// Voltage at the measuring pin while the servos' rail is healthy, mV; 0 if the rail is not measured.
-    rail_mv: f64,
+    /// Voltage at the measuring pin, behind the divider, while the servos' rail is healthy, mV; 0 if the rail is not measured.
+    rail_pin_mv: f64,
 }
 
 impl CoreRun {
-    /// Starts a robot's core as at power-on, with this content of its EEPROM.
+    /// Starts a robot's core as at power-on, with these contents of its EEPROM.
     #[must_use]
-    pub fn begin(robot: CoreRobot, memory: Eeprom) -> Self {
+    pub fn power_on(robot: CoreRobot, memory: Eeprom) -> Self {
         Self {
-            rail_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
+            rail_pin_mv: healthy_rail_mv(&robot.supplies()).unwrap_or(0.0),
             running_robot: RunningRobot::with_memory(robot, memory, Restart::default()),
         }
     }
 
-    /// Ends the run and returns the content of the EEPROM.
+    /// Ends the run and returns the contents of the EEPROM.
     #[must_use]
     pub fn into_memory(self) -> Eeprom {
         self.running_robot.board.memory
@@ -49,15 +49,15 @@ impl CoreRun {
 
     /// Runs one frame of 20 ms with a board supply of `volts`; the core first receives `bytes` from the serial line.
     pub fn run_frame(&mut self, bytes: &[u8], volts: f64) -> CoreFrame {
-        let converter_steps = |volts: f64, full_volts: f64| {
-            (CONVERTER_STEP_COUNT * volts / full_volts).clamp(0.0, CONVERTER_STEP_COUNT - 1.0)
+        let adc_code = |pin_volts: f64, supply_volts: f64| {
+            (ADC_FULL_SCALE * pin_volts / supply_volts).clamp(0.0, ADC_FULL_SCALE - 1.0)
         };
         self.running_robot
             .board
             .converter
             .set_true_reading(Reading {
-                reference: converter_steps(REFERENCE_VOLTS, volts).round() as u16,
-                rail: converter_steps(self.rail_mv / 1000.0, volts) as u16,
+                reference: adc_code(REFERENCE_VOLTS, volts).round() as u16,
+                rail: adc_code(self.rail_pin_mv / 1000.0, volts) as u16,
             });
         // The bytes arrive one by one, as on a serial line.
         for byte in bytes {
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
     use lizard_robot::Robot;
 
-    /// Sends a line in the first frame and runs `frames` frames; returns the last pulse widths.
+    /// Sends a line in the first frame and runs `frames` frames; returns the last pulse widths in CPU cycles.
     fn send_and_run(
         output: &mut String,
         core: &mut CoreRun,
@@ -104,7 +104,7 @@ mod tests {
     fn the_core_prints_its_banner_walks_and_keeps_saved_settings() {
         let robot =
             Robot::parse(include_str!("../../../robots/large.toml")).expect("large.toml is valid");
-        let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
+        let mut core = CoreRun::power_on(*robot.firmware(), Eeprom::blank());
         let mut output = String::new();
         let standing_widths = send_and_run(&mut output, &mut core, "", 200);
         assert!(output.starts_with("# lizard "), "{output}");
@@ -117,7 +117,7 @@ mod tests {
             output.contains("ok trim 1 3") && output.contains("ok save"),
             "{output}"
         );
-        let mut restarted_core = CoreRun::begin(*robot.firmware(), core.into_memory());
+        let mut restarted_core = CoreRun::power_on(*robot.firmware(), core.into_memory());
         assert_eq!(
             send_and_run(&mut output, &mut restarted_core, "", 200),
             trimmed_widths
@@ -132,7 +132,7 @@ mod tests {
     fn a_low_supply_is_reported() {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
-        let mut core = CoreRun::begin(*robot.firmware(), Eeprom::blank());
+        let mut core = CoreRun::power_on(*robot.firmware(), Eeprom::blank());
         let mut output = String::new();
         send_and_run(&mut output, &mut core, "", 200);
         for _ in 0..200 {

@@ -138,7 +138,7 @@ pub struct PlateEntry {
     pub arms: Vec<[Spot; 2]>,
     /// Half the width of an arm.
     pub arm: f64,
-    /// Middles of the servos' cases.
+    /// Centres of the servos' cases.
     pub cases: [Spot; 4],
     /// Width and length of a case.
     pub case: Spot,
@@ -158,7 +158,7 @@ impl From<Plate> for PlateEntry {
     }
 }
 
-/// The description of a robot.
+/// The description of a robot for the page.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Description {
     /// Hash of the robot's section in hex, as in the banner.
@@ -188,7 +188,7 @@ pub struct Description {
     pub supply: [f64; 3],
     /// Pace limit below the first voltage of `supply`, percent of a gait's own pace.
     pub slow_pace: u8,
-    /// Analog channel that measures the servos' rail, and the voltage at its pin with a healthy rail,
+    /// ADC channel that measures the servos' rail, and the voltage at its pin with a healthy rail,
     /// V; `None` if the rail is not measured.
     pub rail: Option<(u8, f64)>,
     /// Name of each input, and the Arduino number of its pin.
@@ -277,7 +277,7 @@ fn reserved_words() -> Vec<&'static str> {
     words.map(|word| word.text()).collect()
 }
 
-/// The label of each link, l0 to l19, and the number of its mirror image (its own for a base).
+/// The label of each link, l0 to l19, and the number of its mirror image (its own number for a base).
 const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
     ("head base", 0),
     ("head crank, left", 4),

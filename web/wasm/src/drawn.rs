@@ -15,11 +15,11 @@ use crate::reach_area::neutral_point;
 
 /// Number of points at which a line is sampled.
 const SAMPLE_COUNT: usize = 256;
-/// Number of points with which the path is shown.
+/// Number of points of the displayed path.
 const SHOWN_POINT_COUNT: usize = 128;
 /// Smallest amplitude of a harmonic that is written to robot.toml, mm.
 const MIN_AMPLITUDE_MM: f64 = 0.05;
-/// Largest number of harmonics in a robot.toml.
+/// Largest number of harmonics of a path in robot.toml.
 const MAX_HARMONIC_COUNT: usize = 16;
 
 /// A gait in which the end point of head or tail follows a drawn line.
@@ -133,9 +133,9 @@ fn harmonics_of(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
 /// Samples a closed line at even distances along it; `None` if the line has no length.
 fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let next_point = |i: usize| points[(i + 1) % points.len()];
-    let length_from =
+    let segment_length =
         |i: usize| (next_point(i)[0] - points[i][0]).hypot(next_point(i)[1] - points[i][1]);
-    let lengths: Vec<f64> = (0..points.len()).map(length_from).collect();
+    let lengths: Vec<f64> = (0..points.len()).map(segment_length).collect();
     let total_length: f64 = lengths.iter().sum();
     if !(total_length > 1e-6 && total_length.is_finite()) {
         return None;

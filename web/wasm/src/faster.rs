@@ -43,14 +43,14 @@ pub struct Progress {
     /// Number of gaits that the search has tried.
     pub done: usize,
     /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` until a
-    /// gait is valid.
+    /// valid gait is found.
     pub best: Option<f64>,
 }
 
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Found {
-    /// The gait that was found, with the name of the gait to beat.
+    /// The best gait found, with the name of the gait to beat.
     pub bars: Bars,
     /// Comparison of the found gait with the gait to beat, on random robots that the search has not used.
     #[tsify(type = "{ unit: string; rate: number; robots: number; faster: number }")]
@@ -69,7 +69,7 @@ pub struct FasterSearch {
     searches: [Search; GaitKind::ALL.len()],
     /// Index of the kind whose gaits are being tried.
     kind_index: usize,
-    /// Scores of this kind's gaits in the current round, so far.
+    /// Scores so far of this kind's gaits in the current round.
     scores: Vec<Option<f64>>,
     progress: Progress,
     trial_count: usize,
@@ -79,7 +79,7 @@ impl FasterSearch {
     /// Prepares a search with the robot and the floor of a twin; takes as long as a few trials.
     ///
     /// # Errors
-    /// Returns the limit that the gait to beat breaks, or the reason why it cannot be made faster.
+    /// Returns the limit that the gait to beat violates, or the reason why it cannot be made faster.
     pub fn begin(twin: &Twin, task: &SearchTask) -> Result<Self, Refused> {
         let refusal_of = |key: &str, reason: String| Refused {
             refused: reason,
@@ -138,7 +138,7 @@ impl FasterSearch {
     }
 
     /// Compares the best gait so far with the gait to beat, on this number of random robots; `None`
-    /// until a gait is valid.
+    /// until a valid gait is found.
     pub fn best_so_far(&self, robots: usize) -> Option<Found> {
         let mut searches = self.searches.clone();
         if !self.scores.is_empty() {
@@ -171,7 +171,10 @@ mod tests {
     use crate::trial::EditedGait;
 
     fn task_of(name: &str) -> SearchTask {
-        let gait = paper_robot().gait(name).cloned().expect(name);
+        let gait = paper_robot()
+            .gait(name)
+            .cloned()
+            .expect("the robot has this gait");
         SearchTask {
             bars: gait.bars().expect("the gait has bars"),
             rate: None,
@@ -187,12 +190,12 @@ mod tests {
     }
 
     #[test]
-    fn an_unfinished_search_has_the_best_gait_so_far() {
+    fn an_unfinished_search_returns_the_best_gait_so_far() {
         let (robot, twin) = paper_robot_and_twin();
         let mut search =
             FasterSearch::begin(&twin, &task_of("walk")).expect("the gait can be made faster");
         assert_eq!(search.extent().all, 40);
-        assert_eq!(search.best_so_far(20), None, "nothing is tried yet");
+        assert_eq!(search.best_so_far(20), None, "no gait has been tried yet");
         let best = (0..3)
             .map(|_| search.try_next())
             .last()
@@ -230,7 +233,7 @@ mod tests {
             .expect("bars always have a table");
         let trial = trial.expect("the gait is valid");
         assert_eq!(trial.speed, found.comparison.tuned.rate);
-        assert_eq!(search.try_next().done, 4, "the search goes on");
+        assert_eq!(search.try_next().done, 4, "the search continues");
     }
 
     #[test]

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn the_floor_of_a_robot_gives_back_its_ground() {
+    fn the_floor_of_a_robot_reproduces_its_ground() {
         for extra_toml in [
             "",
             "[leg.drive]\nkind = \"strut\"\nforce = 2.5\nplay = 0.4",

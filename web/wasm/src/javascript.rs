@@ -1,6 +1,6 @@
-//! The class with which JavaScript uses a robot. Values are passed as JSON, which is fastest for objects with many
+//! The JavaScript class for a robot. Values are passed as JSON, which is fastest for objects with many
 //! small arrays; their TypeScript types come from the structures of this crate.
-#![allow(clippy::missing_errors_doc)] // each fails if an argument has another type, and for no other reason
+#![allow(clippy::missing_errors_doc)] // each fails only if an argument has the wrong type
 
 use js_sys::JSON;
 use lizard_robot::edit;
@@ -52,7 +52,8 @@ fn result_to_js(result: Result<impl Serialize, impl Serialize>) -> JsValue {
 
 /// Converts an argument from JavaScript.
 pub(crate) fn from_js<T: DeserializeOwned>(value: &JsValue) -> Result<T, JsError> {
-    let text = JSON::stringify(value).map_err(|_| JsError::new("this is no JSON"))?;
+    let text = JSON::stringify(value)
+        .map_err(|_| JsError::new("the argument cannot be written as JSON"))?;
     Ok(serde_json::from_str(&String::from(text))?)
 }
 
@@ -63,7 +64,7 @@ pub struct Robot(Page);
 
 #[wasm_bindgen]
 impl Robot {
-    /// Makes a page without a robot.
+    /// Creates a page without a robot.
     #[must_use]
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
@@ -130,7 +131,7 @@ impl Robot {
         Ok(to_js(self.0.follow_pose(from_js(angles)?, frames)))
     }
 
-    /// Puts the robot back to its start on the floor.
+    /// Returns the robot to its start on the floor.
     pub fn restart(&mut self) {
         self.0.restart();
     }
@@ -196,23 +197,23 @@ impl Robot {
     #[wasm_bindgen(unchecked_return_type = "Trial | NoTrial | null")]
     pub fn trial(
         &self,
-        #[wasm_bindgen(unchecked_param_type = "EditedGait")] made: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "EditedGait")] edited_gait: &JsValue,
     ) -> Result<JsValue, JsError> {
         Ok(self
             .0
-            .try_gait(&from_js(made)?)
+            .try_gait(&from_js(edited_gait)?)
             .map_or(JsValue::NULL, result_to_js))
     }
 
-    /// Returns the robot.toml with this gait: it replaces the gait of the same name, or else is added. Unchanged for a
-    /// drawn line without length.
+    /// Returns the robot.toml with this gait: it replaces the gait of the same name, or else is added. Returns the text
+    /// unchanged for a drawn line without length.
     #[wasm_bindgen(js_name = putGait)]
     pub fn put_gait(
         &self,
         toml: &str,
-        #[wasm_bindgen(unchecked_param_type = "EditedGait")] made: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "EditedGait")] edited_gait: &JsValue,
     ) -> Result<String, JsError> {
-        let text = self.0.put_gait(toml, &from_js(made)?);
+        let text = self.0.put_gait(toml, &from_js(edited_gait)?);
         Ok(text.unwrap_or_else(|| toml.to_owned()))
     }
 
@@ -241,9 +242,9 @@ impl Robot {
     #[wasm_bindgen(unchecked_return_type = "[number, number][] | null")]
     pub fn path(
         &self,
-        #[wasm_bindgen(unchecked_param_type = "DrawnGait")] drawn: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "DrawnGait")] drawn_gait: &JsValue,
     ) -> Result<JsValue, JsError> {
-        Ok(to_js(self.0.drawn_path(&from_js(drawn)?)))
+        Ok(to_js(self.0.drawn_path(&from_js(drawn_gait)?)))
     }
 
     /// Returns the area that the end point of the head (0) or the tail (1) can reach; null without a robot.
@@ -288,8 +289,8 @@ impl Robot {
         to_js(self.0.search().map(|search| search.try_next()))
     }
 
-    /// Returns the best gait so far, compared with the gait to beat on this number of random robots; null until a gait
-    /// is valid.
+    /// Returns the best gait so far, compared with the gait to beat on this number of random robots; null until a
+    /// valid gait is found.
     #[wasm_bindgen(js_name = fasterFound, unchecked_return_type = "Found | null")]
     pub fn faster_found(&mut self, robots: usize) -> JsValue {
         to_js(

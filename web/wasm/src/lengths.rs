@@ -1,8 +1,8 @@
 //! Changed lengths of a robot and, if they are refused, valid alternatives.
 //!
 //! There are two alternatives, each checked as a complete robot: the accepted lengths that are nearest
-//! to the wanted ones, between the lengths in the text and those; and the wanted lengths without the
-//! gait that forbids them.
+//! to the requested ones, on the way from the lengths in the text; and the requested lengths without
+//! the gait that forbids them.
 
 use lizard_robot::Robot;
 use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
@@ -16,23 +16,23 @@ use crate::refused::Refused;
 const LENGTH_STEP: f64 = 0.5;
 
 /// Lengths, mm or deg, by their keys, such as `links.l2`.
-type WantedLengths = [(String, f64)];
+type RequestedLengths = [(String, f64)];
 
 /// The text of a robot.toml with other lengths, its refusal, and valid alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Lengths {
-    /// The text with the wanted lengths.
+    /// The text with the requested lengths.
     text: String,
     /// The refusal of `text`; `None` if it is a valid robot.
     refusal: Option<Refused>,
-    /// The accepted lengths nearest to the wanted ones; `None` if they were not needed, not searched for, or not found.
+    /// The accepted lengths nearest to the requested ones; `None` if not needed, not searched for, or not found.
     nearest: Option<NearestLengths>,
-    /// The wanted lengths without the gait that forbids them; `None` if not needed or not searched for, or if the text
+    /// The requested lengths without the gait that forbids them; `None` if not needed or not searched for, or if the text
     /// without the gait is refused, too.
     without: Option<WithoutGait>,
 }
 
-/// The accepted lengths that are nearest to the wanted ones.
+/// The accepted lengths that are nearest to the requested ones.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct NearestLengths {
     /// The lengths by their keys.
@@ -53,8 +53,8 @@ pub struct WithoutGait {
 impl Lengths {
     /// Sets lengths in the text of a robot.toml; if `searches`, also looks for valid alternatives.
     #[must_use]
-    pub fn of(text: &str, wanted: &WantedLengths, searches: bool) -> Self {
-        let changed_text = match with_lengths(text, wanted) {
+    pub fn of(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
+        let changed_text = match with_lengths(text, requested) {
             Ok(text) => text,
             Err(unknown_key) => return Self::of_refusal(text.to_string(), unknown_key.into()),
         };
@@ -71,7 +71,7 @@ impl Lengths {
         let gait = gait.filter(|_| searches).map(str::to_string);
         Self {
             nearest: searches
-                .then(|| find_nearest_lengths(text, wanted))
+                .then(|| find_nearest_lengths(text, requested))
                 .flatten(),
             without: gait.and_then(|gait| {
                 let text = without_gait(&changed_text, &gait);
@@ -107,8 +107,8 @@ pub fn accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     };
     let nearest_accepted = |value: f64| {
         let value = (value / LENGTH_STEP).round() * LENGTH_STEP;
-        let wanted: Vec<_> = keys.iter().map(|key| (key.clone(), value)).collect();
-        let result = Lengths::of(text, &wanted, true);
+        let requested: Vec<_> = keys.iter().map(|key| (key.clone(), value)).collect();
+        let result = Lengths::of(text, &requested, true);
         let nearest = result
             .nearest
             .and_then(|nearest| nearest.lengths.first().cloned());
@@ -121,20 +121,20 @@ pub fn accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
     Some((nearest_accepted(smallest), nearest_accepted(largest)))
 }
 
-/// Returns the text with the wanted lengths.
-fn with_lengths(text: &str, wanted: &WantedLengths) -> Result<String, NoSuchKey> {
+/// Returns the text with the requested lengths.
+fn with_lengths(text: &str, requested: &RequestedLengths) -> Result<String, NoSuchKey> {
     let mut text = text.to_string();
-    for (key, value) in wanted {
+    for (key, value) in requested {
         text = with_number(&text, key, *value)?;
     }
     Ok(text)
 }
 
-/// Bisects between the lengths in the text and the wanted ones, until they are less than [`LENGTH_STEP`] apart;
+/// Bisects between the lengths in the text and the requested ones, until they are less than [`LENGTH_STEP`] apart;
 /// `None` if no lengths in between are accepted.
-fn find_nearest_lengths(text: &str, wanted: &WantedLengths) -> Option<NearestLengths> {
+fn find_nearest_lengths(text: &str, requested: &RequestedLengths) -> Option<NearestLengths> {
     let present_lengths = Description::of(&Robot::parse(text).ok()?).lengths;
-    let changes: Vec<(&String, f64, f64)> = wanted
+    let changes: Vec<(&String, f64, f64)> = requested
         .iter()
         .map(|(key, to)| {
             let present_length = present_lengths.iter().find(|length| length.key == *key);
@@ -197,7 +197,7 @@ mod tests {
             meaning.as_deref(),
             Some("in the neutral pose the left slider would run into its end")
         );
-        assert_eq!(result.without, None, "no gait is in the way");
+        assert_eq!(result.without, None, "no gait forbids the lengths");
         let NearestLengths { lengths, text } =
             result.nearest.expect("shorter lengths are accepted");
         let [(_, left_half), (_, right_half)] = lengths[..] else {
@@ -212,7 +212,7 @@ mod tests {
             longer_lengths.refusal.is_some(),
             "{left_half} is not the longest"
         );
-        assert_eq!(longer_lengths.nearest, None, "the search was not asked for");
+        assert_eq!(longer_lengths.nearest, None, "no search was requested");
     }
 
     #[test]

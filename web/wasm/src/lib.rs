@@ -1,9 +1,9 @@
 //! The robot for the page: everything that the browser computes about a robot. This crate has almost no
 //! formulas of its own; it calls the project's other crates.
 //!
-//! The page gives the text of a robot.toml and then, fifty times per second, the four pulse widths at
+//! The page passes the text of a robot.toml and then, fifty times per second, the four pulse widths at
 //! the pins of a UNO. It gets back the place of every joint, the margin to every singularity, the limit
-//! that the pose breaks, if any, and the place of the body on the floor. [`Page`] holds this state;
+//! that the pose violates, if any, and the place of the body on the floor. [`Page`] holds this state;
 //! [`Robot`] is its class for JavaScript.
 //!
 //! # When not to use it

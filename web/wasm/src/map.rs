@@ -92,24 +92,24 @@ fn evaluate_point(
     left: f64,
     right: f64,
 ) -> (Option<i8>, bool) {
-    let Ok(bars) = lizard.end(end).forward(left, right) else {
+    let Ok(five_bar_pose) = lizard.end(end).forward(left, right) else {
         return (None, false);
     };
-    let margins = bars.conditions(end).into_iter();
+    let margins = five_bar_pose.conditions(end).into_iter();
     let smallest_margin = margins
         .filter(|(check, _)| !Check::UNCROSSED.contains(check))
         .fold(1.0f64, |smallest, (_, value)| smallest.min(value));
-    let is_safe = limits.end_violations(end, &bars).next().is_none();
+    let is_safe = limits.end_violations(end, &five_bar_pose).next().is_none();
     (Some((smallest_margin * 100.0).round() as i8), is_safe)
 }
 
 /// Finds the singular poses of an end within the map.
 fn curves_of(robot: &Robot, end: End) -> Vec<Curve> {
-    let bars = robot.lizard().end(end);
+    let five_bar = robot.lizard().end(end);
     let step_count = ((MAX_ANGLE_DEG - MIN_ANGLE_DEG) / CURVE_STEP_DEG) as usize;
     let poses: Vec<SingularPose> = (0..=step_count)
-        .flat_map(|i| bars.singular_poses_with(MIN_ANGLE_DEG + CURVE_STEP_DEG * i as f64))
-        .chain(bars.poses_with_coinciding_tips())
+        .flat_map(|i| five_bar.singular_poses_with(MIN_ANGLE_DEG + CURVE_STEP_DEG * i as f64))
+        .chain(five_bar.poses_with_coinciding_tips())
         .filter(|pose| {
             let is_inside = |theta: f64| (MIN_ANGLE_DEG..=MAX_ANGLE_DEG).contains(&theta);
             is_inside(pose.theta_left) && is_inside(pose.theta_right)
@@ -152,9 +152,9 @@ mod tests {
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         for end in End::ALL {
             let map = Map::of(&robot, end);
-            let cell_of = |MapPoint(left, right): MapPoint| {
-                let index_of = |theta: f64| ((theta - map.from) / GRID_STEP_DEG).round() as usize;
-                index_of(left) * map.size + index_of(right)
+            let index_at = |MapPoint(left, right): MapPoint| {
+                let grid_index = |theta: f64| ((theta - map.from) / GRID_STEP_DEG).round() as usize;
+                grid_index(left) * map.size + grid_index(right)
             };
             let neutral_point = map_point(end, &robot.neutral_pose());
             assert!(
@@ -162,9 +162,10 @@ mod tests {
                 "{neutral_point:?}"
             );
             assert!(
-                map.safe[cell_of(neutral_point)] && map.margins[cell_of(neutral_point)] > Some(60)
+                map.safe[index_at(neutral_point)]
+                    && map.margins[index_at(neutral_point)] > Some(60)
             );
-            assert!(!map.safe[cell_of(MapPoint(70.5, 109.5))]);
+            assert!(!map.safe[index_at(MapPoint(70.5, 109.5))]);
             let couplers = &map.curves[0].points;
             assert!(
                 couplers.iter().any(|point| (point.0 - 70.529).abs() < 0.01),

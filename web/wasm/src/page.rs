@@ -37,11 +37,11 @@ pub struct Frame {
     fault: Option<String>,
     /// Place of the body on the floor.
     place: Place,
-    /// Distance that each foot slid over the floor in this frame, mm, servo order.
+    /// Distance that each foot slid over the floor in this frame, mm, in servo order.
     slides: [f64; 4],
-    /// Lag of each leg behind its servo, deg, foot forward positive, servo order.
+    /// Lag of each leg behind its servo, deg, foot forward positive, in servo order.
     lag: [f64; 4],
-    /// Target angle by the pulse minus actual angle of each servo, deg.
+    /// Angle commanded by the pulse minus actual angle of each servo, deg.
     errors: [f64; 4],
 }
 
@@ -154,8 +154,8 @@ impl Page {
         Ok(Edited::of(text))
     }
 
-    /// Moves the robot for one frame with these pulse widths in CPU cycles; 0 is no pulse, which leaves a servo where
-    /// it is. `None` without a robot.
+    /// Moves the robot for one frame with these pulse widths in CPU cycles; 0 is no pulse, which leaves the servo at
+    /// its angle. `None` without a robot.
     pub fn follow_pulses(&mut self, widths: [u32; 4]) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         let to_us = |width: u32| f64::from(width) / CYCLES_PER_US;
@@ -193,7 +193,7 @@ impl Page {
         Some(frame_of(twin, &state, slides))
     }
 
-    /// Puts the robot back to its start on the floor.
+    /// Returns the robot to its start on the floor.
     pub fn restart(&mut self) {
         if let Some(twin) = &mut self.twin {
             twin.set_place(RobotPlace::START);
@@ -237,7 +237,7 @@ impl Page {
     /// Tries a gait on the page's robot; `None` if no robot was read, or the drawn line has no length.
     ///
     /// # Errors
-    /// Returns the first limit that the gait breaks, with valid alternatives.
+    /// Returns the first limit that the gait violates, with valid alternatives.
     pub fn try_gait(&self, edited_gait: &EditedGait) -> Option<Result<Trial, NoTrial>> {
         edited_gait.try_on(self.twin.as_ref()?)
     }
@@ -264,14 +264,14 @@ impl Page {
     /// Prepares the search for a faster gait of the page's robot; `None` without a robot.
     ///
     /// # Errors
-    /// Returns the reason why the search cannot begin.
+    /// Returns the reason why the search cannot start.
     #[cfg(feature = "tune")]
     pub fn begin_search(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
         let search = FasterSearch::begin(self.twin.as_ref()?, task);
         Some(search.map(|search| self.search.insert(search).extent()))
     }
 
-    /// Returns the search that was prepared last; `None` if none was prepared since the robot was read.
+    /// Returns the prepared search; `None` if none has been prepared since the robot was read.
     #[cfg(feature = "tune")]
     pub fn search(&mut self) -> Option<&mut FasterSearch> {
         self.search.as_mut()
@@ -293,7 +293,7 @@ impl Page {
         Some(Map::of(self.robot()?, *End::ALL.get(end)?))
     }
 
-    /// Starts the core as at power-on with this robot; the EEPROM keeps the content of the previous run, unless the
+    /// Starts the core as at power-on with this robot; the EEPROM keeps the contents of the previous run, unless the
     /// robot has been read again since.
     pub fn run_core(&mut self) {
         let memory = self
@@ -301,7 +301,7 @@ impl Page {
             .take()
             .map_or_else(Eeprom::default, CoreRun::into_memory);
         let robot = self.robot();
-        self.core_run = robot.map(|robot| CoreRun::begin(*robot.firmware(), memory));
+        self.core_run = robot.map(|robot| CoreRun::power_on(*robot.firmware(), memory));
     }
 
     /// Runs the core for a frame with a board supply of `volts`, after it has received `bytes` from the serial line;

@@ -1,4 +1,4 @@
-//! The reach of head and tail: the part of the plane in which a path of the end point can be drawn.
+//! The workspace of head and tail: the part of the plane in which a path of the end point can be drawn.
 //!
 //! The other end is at neutral. A point is allowed if the inverse kinematics has crank angles for it
 //! and the limits allow the pose at these angles.
@@ -10,7 +10,7 @@ use tsify::Tsify;
 
 /// Number of grid steps across the plane, whose width is twice the longest reach.
 const STEPS_ACROSS: i32 = 160;
-/// Number of points that are kept on each side around the allowed points.
+/// Width of the rim of points around the allowed points, in grid points.
 const RIM_POINT_COUNT: i32 = 2;
 /// Largest distance between two points that count as the same, mm.
 const POINT_TOLERANCE_MM: f64 = 1e-6;
@@ -37,20 +37,22 @@ impl ReachArea {
     /// Computes the area that the end point of head or tail can reach.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
-        let bars = robot.lizard().end(end);
-        let reach = bars.base / 2.0
-            + bars.left_crank_length.max(bars.right_crank_length)
-            + bars.left_coupler_length.max(bars.right_coupler_length);
+        let five_bar = robot.lizard().end(end);
+        let reach = five_bar.base / 2.0
+            + five_bar.left_crank_length.max(five_bar.right_crank_length)
+            + five_bar
+                .left_coupler_length
+                .max(five_bar.right_coupler_length);
         let step = 2.0 * reach / f64::from(STEPS_ACROSS);
         let point_at = |column: i32, row: i32| [f64::from(column) * step, f64::from(row) * step];
         let half_steps = STEPS_ACROSS / 2;
-        let reachable_row = |row: i32| -> Vec<bool> {
+        let row_of_plane = |row: i32| -> Vec<bool> {
             let columns = -half_steps..=half_steps;
             columns
-                .map(|column| is_reachable(robot, end, point_at(column, row)))
+                .map(|column| is_point_allowed(robot, end, point_at(column, row)))
                 .collect()
         };
-        let plane: Vec<Vec<bool>> = (-half_steps..=half_steps).map(reachable_row).collect();
+        let plane: Vec<Vec<bool>> = (-half_steps..=half_steps).map(row_of_plane).collect();
         let is_allowed = |column: i32, row: i32| {
             let row = usize::try_from(row + half_steps)
                 .ok()
@@ -73,12 +75,12 @@ impl ReachArea {
             range_with_rim(&|column| (-half_steps..=half_steps).any(|row| is_allowed(column, row)));
         let rows =
             range_with_rim(&|row| (-half_steps..=half_steps).any(|column| is_allowed(column, row)));
-        let cells_of_row = |row| columns.clone().map(move |column| (column, row));
+        let points_of_row = |row| columns.clone().map(move |column| (column, row));
         let allowed = rows
             .clone()
-            .flat_map(cells_of_row)
+            .flat_map(points_of_row)
             .map(|(column, row)| is_allowed(column, row));
-        let half_base = bars.base / 2.0;
+        let half_base = five_bar.base / 2.0;
         Self {
             from: point_at(*columns.start(), *rows.start()),
             step,
@@ -98,7 +100,7 @@ pub fn neutral_point(robot: &Robot, end: End) -> [f64; 2] {
 }
 
 /// True if the limits allow the pose with the end point here and the other end at neutral.
-fn is_reachable(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
+fn is_point_allowed(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     let Ok(crank_angles) = robot.lizard().point_angles(end, Vector::new(x, y)) else {
         return false;
     };

@@ -18,11 +18,11 @@ const FRAMES_PER_PLACE: usize = 5;
 /// The path of a round that begins with the robot standing.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct RoundPath {
-    /// Places in the order of time, the last one at the end of the path.
+    /// Places in chronological order; the last one is at the end of the path.
     pub places: Vec<Place>,
     /// Duration of the path, s.
     pub seconds: f64,
-    /// True if the round goes on beyond the path.
+    /// True if the round continues beyond the path.
     pub is_cut: bool,
 }
 
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_ends_where_its_gaits_lead() {
+    fn a_path_ends_at_the_sum_of_the_displacements_of_its_gaits() {
         let square = path_of("\"walk 3\", \"left 6\", \"walk 3\"");
         let Some(Place { x, y, heading }) = square.places.last() else {
             panic!("the path has places")

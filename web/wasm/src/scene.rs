@@ -63,7 +63,7 @@ pub struct Margin {
 /// The robot at a pose.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Scene {
-    /// Servo angles, deg, chassis frame, servo order.
+    /// Servo angles, deg, chassis frame, in servo order.
     pub angles: [f64; 4],
     /// Shafts in servo order.
     pub shafts: [Spot; 4],
@@ -81,7 +81,7 @@ pub struct Scene {
     pub margins: Vec<Margin>,
     /// The smallest margin.
     pub smallest: Margin,
-    /// The message about the limit that this pose breaks; `None` if the pose is allowed.
+    /// The message about the limit that this pose violates; `None` if the pose is allowed.
     pub refusal: Option<String>,
     /// The pose's points on the maps of singularities of head and tail.
     pub map: [MapPoint; 2],
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_that_does_not_close_is_named() {
+    fn the_message_names_the_loop_that_does_not_close() {
         // Couplers that barely reach each other in the neutral pose.
         let short_toml = ["l2", "l3"]
             .iter()

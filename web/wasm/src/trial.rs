@@ -28,7 +28,7 @@ pub enum EditedGait {
     Bars(Bars),
 }
 
-/// The figures of a valid gait.
+/// The result of the trial of a valid gait.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Trial {
     /// Predicted displacement per cycle.
@@ -38,7 +38,7 @@ pub struct Trial {
     pub table: String,
     /// Name of the margin that comes nearest to its limit.
     pub margin: &'static str,
-    /// Least value of that margin, the sine of an angle.
+    /// Smallest value of that margin, the sine of an angle.
     pub least: f64,
     /// Limit of that margin, also a sine.
     pub limit: f64,
@@ -90,7 +90,7 @@ impl EditedGait {
     /// no length.
     ///
     /// # Errors
-    /// Returns the first limit that the gait breaks, with valid alternatives.
+    /// Returns the first limit that the gait violates, with valid alternatives.
     #[must_use]
     pub fn try_on(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
         let table = self.table(twin.robot())?;

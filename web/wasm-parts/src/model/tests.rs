@@ -18,7 +18,7 @@ fn to_chassis([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
 }
 
 #[test]
-fn lagging_legs_are_where_the_shape_has_them() {
+fn lagging_legs_are_where_the_twins_shape_places_them() {
     let model = model_of("strut");
     let robot = model.assembly().robot().clone();
     let neutral: [f64; 4] = robot.neutral_pose().into();
@@ -50,7 +50,7 @@ fn lagging_legs_are_where_the_shape_has_them() {
 }
 
 #[test]
-fn without_lag_every_mount_is_at_its_place_in_the_assembly() {
+fn without_lag_every_mount_has_its_pose_in_the_assembly() {
     let model = model_of("rigid");
     let robot = model.assembly().robot();
     let angles = [130.0, 45.0, 322.0, 219.0];

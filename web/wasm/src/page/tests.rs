@@ -11,7 +11,9 @@ fn a_refused_robot_leaves_the_previous_one_in_place() {
     let mut page = Page::default();
     assert_eq!(page.follow_pulses([24_000; 4]), None);
     page.read(PAPER_TOML).expect("paper.toml is valid");
-    let error = page.read("[links]").expect_err("the robot has no links");
+    let error = page
+        .read("[links]")
+        .expect_err("a robot without links is refused");
     assert!(error.refused.starts_with("robot.toml"), "{error:?}");
     assert!(page.follow_pulses([24_000; 4]).is_some());
 }
@@ -25,11 +27,11 @@ fn page_of_paper() -> Page {
 /// Returns the index of a gait.
 fn gait_index(page: &Page, name: &str) -> usize {
     let gait = page.robot().and_then(|robot| robot.gait(name));
-    gait.expect(name).index()
+    gait.expect("the robot has this gait").index()
 }
 
 #[test]
-fn a_servo_stays_where_it_is_when_its_pulses_end() {
+fn a_servo_keeps_its_angle_when_its_pulses_end() {
     let mut page = page_of_paper();
     page.set_servos("ideal");
     let scene_of = |frame: Option<Frame>| {
@@ -79,11 +81,12 @@ fn real_servos_have_a_dead_band_and_a_limited_speed_and_ideal_ones_neither() {
     assert_near(turn_and_error(&mut page, 0), [0.0, 0.0]);
 }
 
-/// Lets the page follow two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns, of
-/// the second cycle, the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
+/// Lets the page follow two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns for the
+/// second cycle: the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
 fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
-    let gait = page.robot().and_then(|robot| robot.gait(name)).expect(name);
+    let gait = page.robot().and_then(|robot| robot.gait(name));
+    let gait = gait.expect("the robot has this gait");
     let poses: Vec<[f64; 4]> = gait
         .frames()
         .step_by(frames as usize)
@@ -94,13 +97,13 @@ fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64;
             |angles: &[f64; 4]| page.follow_pose(*angles, frames).expect("a robot was read");
         poses.iter().map(frame_at).collect()
     };
-    let (first, second) = (follow_cycle(), follow_cycle());
+    let (first_cycle, second_cycle) = (follow_cycle(), follow_cycle());
     let end_place = |frames: &[Frame]| frames.last().expect("a cycle has frames").place;
-    let slides = second.iter().map(|frame| frame.slides).collect();
-    let lags = second.iter().flat_map(|frame| frame.lag);
+    let slides = second_cycle.iter().map(|frame| frame.slides).collect();
+    let lags = second_cycle.iter().flat_map(|frame| frame.lag);
     let largest_lag = lags.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
     (
-        end_place(&first).movement_to(end_place(&second)),
+        end_place(&first_cycle).movement_to(end_place(&second_cycle)),
         slides,
         largest_lag,
     )
@@ -142,7 +145,7 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
     let sg90_mm = forward_of(&page).expect("the displacement is determined");
     page.set_servos("ideal");
     let ideal_mm = forward_of(&page).expect("the displacement is determined");
-    // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, and up to 2 % where the samples
+    // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, and up to 2 % since the samples
     // of a waveform cut its corners; the prediction for ideal servos has no such samples.
     assert!(
         (sg90_mm / ideal_mm - 39.0 / 40.0).abs() < 0.02,
@@ -192,13 +195,13 @@ fn at_least_two_feet_hold_at_any_time_of_a_walk() {
     let (_, slides, _) = follow_cycles(&mut page_of_paper(), "walk", 1);
     let mut slid_mm = [0.0; 4];
     for frame_slides in slides {
-        let holding = frame_slides.iter().filter(|mm| **mm < 0.3).count();
-        assert!(holding >= 2, "{frame_slides:?}");
+        let holding_count = frame_slides.iter().filter(|mm| **mm < 0.3).count();
+        assert!(holding_count >= 2, "{frame_slides:?}");
         slid_mm = [0, 1, 2, 3].map(|i| slid_mm[i] + frame_slides[i]);
     }
     assert!(
         slid_mm.iter().all(|mm| *mm > 20.0),
-        "each foot is dragged in the cycle: {slid_mm:?}"
+        "each foot slides at some time in the cycle: {slid_mm:?}"
     );
 }
 
@@ -241,7 +244,7 @@ fn springs_set_on_the_page_act_as_predicted() {
 }
 
 #[test]
-fn a_strut_with_a_strong_spring_is_as_good_as_a_rigid_one() {
+fn a_strut_with_a_strong_spring_performs_like_a_rigid_one() {
     let mut page = page_of_paper();
     let floor = Floor {
         kind: Legs::Strut,

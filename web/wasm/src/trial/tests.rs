@@ -6,7 +6,7 @@ use crate::paper::{PAPER_TOML, paper_robot, paper_robot_and_twin};
 fn bars_of(robot: &Robot, name: &str) -> Bars {
     robot
         .gait(name)
-        .expect(name)
+        .expect("the robot has this gait")
         .bars()
         .expect("the gait has bars")
 }
@@ -27,13 +27,13 @@ fn put_into(bars: &Bars, text: &str) -> String {
 fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
     let (robot, twin) = paper_robot_and_twin();
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
-        let gait = robot.gait(name).expect(name);
+        let gait = robot.gait(name).expect("the robot has this gait");
         let trial = try_bars(&bars_of(&robot, name), &twin).expect("the gait is valid");
         assert_eq!(trial.outlook, GaitPrediction::of(&twin, gait), "{name}");
         assert_eq!(trial.speed, gait.audit().peak_speed.speed, "{name}");
     }
     for name in ["stand", "look"] {
-        let gait = robot.gait(name).expect(name);
+        let gait = robot.gait(name).expect("the robot has this gait");
         assert_eq!(gait.bars(), None, "{name}");
     }
 }
@@ -83,7 +83,7 @@ fn a_reversed_gait_walks_the_same_distance_backwards() {
 }
 
 #[test]
-fn a_refusal_offers_the_nearest_values_that_are_possible() {
+fn a_refusal_offers_the_nearest_valid_values() {
     let (robot, twin) = paper_robot_and_twin();
     let too_large_gait = Bars {
         amplitude: 60.0,
