@@ -31,8 +31,8 @@ struct KeyLine {
     verdict: &'static str,
 }
 
-/// The place of the card with the tag on the robot's deck, relative to the middle of the deck: values and standard
-/// errors, deg and mm.
+/// The pose of the tag card on the robot's deck, relative to the deck's middle: each a value and its standard error,
+/// in deg for the turn and in mm for the offsets.
 #[derive(Serialize)]
 struct CardLine {
     turn: [f64; 2],
@@ -70,13 +70,13 @@ struct GaitLine {
 
 impl KeysReport {
     pub(super) fn new(identified: &Identified, written_path: Option<&Path>) -> Self {
-        let [card, error] = &identified.card;
-        let value_and_error = |value_of: fn(&Card) -> f64| [value_of(card), value_of(error)];
+        let [card, card_error] = &identified.card;
+        let value_and_error = |value_of: fn(&Card) -> f64| [value_of(card), value_of(card_error)];
         let Goodness {
             chi_squares: [chi_square_before, chi_square, chi_square_all_free],
             ..
         } = identified.goodness;
-        let named_pair =
+        let name_pair =
             |(first, second, correlation): &(&lizard_identify::Key, &lizard_identify::Key, f64)| {
                 (first.full_name(), second.full_name(), *correlation)
             };
@@ -87,7 +87,7 @@ impl KeysReport {
                 ahead: value_and_error(|card| card.ahead),
                 left: value_and_error(|card| card.left),
             },
-            alike: identified.correlated_pairs.iter().map(named_pair).collect(),
+            alike: identified.correlated_pairs.iter().map(name_pair).collect(),
             fit: FitLine {
                 figures: identified.goodness.figure_count,
                 chi_square_before,
@@ -122,22 +122,22 @@ impl KeyLine {
 }
 
 impl GaitLine {
-    fn new(row: &MovementResult) -> Self {
+    fn new(result: &MovementResult) -> Self {
         Self {
-            gait: row.measured.gait.clone(),
-            speed: 100.0 * row.measured.pace,
-            measured: row.measured.mean,
-            error: row
+            gait: result.measured.gait.clone(),
+            speed: 100.0 * result.measured.pace,
+            measured: result.measured.mean,
+            error: result
                 .measured
                 .error
                 .map(|error| Some(error).filter(|error| error.is_finite())),
-            before: row.predicted_before,
-            after: row.predicted_after,
+            before: result.predicted_before,
+            after: result.predicted_after,
         }
     }
 }
 
-/// The result as text for people.
+/// Formats the report for people.
 pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) -> String {
     let mut text = format!(
         "{:<35}{:>10}{:>10}{:>9}\n",
@@ -146,12 +146,12 @@ pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) 
     for result in &identified.keys {
         text += &key_line(result);
     }
-    let [card, error] = &identified.card;
+    let [card, card_error] = &identified.card;
     let _ = writeln!(
         text,
         "\nThe card on the deck lies {:+.1} +- {:.1} mm ahead of the middle, {:+.1} +- {:.1} mm to the left, and is turned by \
          {:+.2} +- {:.2} deg.",
-        card.ahead, error.ahead, card.left, error.left, card.turn, error.turn
+        card.ahead, card_error.ahead, card.left, card_error.left, card.turn, card_error.turn
     );
     for (first, second, correlation) in &identified.correlated_pairs {
         let _ = writeln!(
@@ -168,8 +168,8 @@ pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) 
         "\n{:<28}{:>9}{:>7}{:>9}{:>9}",
         "a cycle", "measured", "error", "before", "after"
     );
-    for row in &identified.movements {
-        text += &row_lines(row);
+    for result in &identified.movements {
+        text += &movement_lines(result);
     }
     text += "\n";
     match written_path {
@@ -212,26 +212,26 @@ fn key_line(result: &KeyResult) -> String {
     )
 }
 
-/// A paragraph about how well the model explains the measurements.
+/// Formats the paragraph on the goodness of the fit.
 fn goodness_text(identified: &Identified) -> String {
     let Goodness {
-        figure_count: figures,
+        figure_count,
         chi_squares: [chi_before, chi_after, chi_free],
         degrees_of_freedom: freedom,
         chi_square_limit: limit,
         is_explained,
         error_factor,
-        largest_difference: (row_index, part_index, errors),
+        largest_difference: (movement_index, part_index, difference),
     } = identified.goodness;
     let mut text = format!(
-        "{figures} figures: chi-square {chi_before:.1} by robot.toml, {chi_after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
+        "{figure_count} figures: chi-square {chi_before:.1} by robot.toml, {chi_after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
     );
     let (name, _) = PARTS[part_index];
-    let gait = &identified.movements[row_index].measured.gait;
-    let comparison = if errors > 0.0 { "more" } else { "less" };
+    let gait = &identified.movements[movement_index].measured.gait;
+    let comparison = if difference > 0.0 { "more" } else { "less" };
     let worst_text = format!(
         "`{gait}`, {name}: {:.1} errors {comparison} than the model",
-        errors.abs()
+        difference.abs()
     );
     if !is_explained {
         let _ = writeln!(
@@ -263,8 +263,8 @@ fn goodness_text(identified: &Identified) -> String {
     text
 }
 
-fn row_lines(row: &MovementResult) -> String {
-    let movement = &row.measured;
+fn movement_lines(result: &MovementResult) -> String {
+    let movement = &result.measured;
     let gait = match movement.pace {
         1.0 => movement.gait.clone(),
         pace => format!("{} at {:.0} %", movement.gait, 100.0 * pace),
@@ -281,8 +281,8 @@ fn row_lines(row: &MovementResult) -> String {
             "{name:<17}{:<11}{:>+9.2}{error:>7}{:>+9.2}{:>+9.2}",
             format!("{part_name}, {unit}"),
             movement.mean[i],
-            row.predicted_before[i],
-            row.predicted_after[i]
+            result.predicted_before[i],
+            result.predicted_after[i]
         );
     }
     lines

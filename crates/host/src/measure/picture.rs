@@ -3,13 +3,13 @@
 use lizard_measure::{GaitReport, PART_NAMES, Report};
 use svg::node::element::Group;
 
-use crate::shared::ink::Anchor;
 use crate::shared::ink::{
-    GREY, SERVO_COLOURS, add_title, circle, line, outlined, rectangle, svg_page, text, text_middle,
-    text_start,
+    Anchor, GREY, SERVO_COLOURS, add_title, circle, line, outlined, rectangle, svg_page, text,
+    text_middle, text_start,
 };
 use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 
+/// Width of the page, px.
 const PAGE_WIDTH: f64 = 1000.0;
 /// Height of the title with the legend below it, px.
 const TITLE_HEIGHT: f64 = 110.0;
@@ -68,7 +68,7 @@ fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
     draw_bars(group, gait, top + 55.0)
 }
 
-/// Draws the path within a cycle on the floor. Ahead is to the right, left is upward.
+/// Draws the path within a cycle on the floor; x points ahead, y to the left, mm.
 fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let predicted: Vec<(f64, f64)> = gait
         .predicted_path
@@ -221,12 +221,12 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     plot.draw_axes(group, &name_axis, &value_axis)
 }
 
-/// The distance between ticks, 1, 2 or 5 times a power of ten, with which `range` has four to ten of them.
+/// Returns the distance between ticks that divides `range` into 4 to 10 steps: 1, 2 or 5 times a power of ten.
 fn tick_step(range: f64) -> f64 {
     let max_step = range / 4.0;
     let power = 10f64.powf(max_step.log10().floor());
     let factor = [5.0, 2.0]
         .into_iter()
-        .find(|times| times * power <= max_step);
+        .find(|factor| factor * power <= max_step);
     factor.unwrap_or(1.0) * power
 }

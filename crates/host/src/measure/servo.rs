@@ -89,7 +89,8 @@ struct Report {
     figures: Vec<MeasuredKey>,
     /// Rates counter-clockwise and clockwise with their errors, deg/s.
     rates: [[f64; 2]; 2],
-    /// Difference between the angles at which the horn stops from either side, deg, and its error.
+    /// Hysteresis: the difference between the angles at which the horn stops when it comes from either side, deg, and
+    /// its error.
     sides: [f64; 2],
     /// The largest small step of the pulse that did not move the servo, us.
     still_us: f64,
@@ -103,7 +104,7 @@ struct Report {
     is_volts_measured: bool,
     /// The file of the new robot.toml; null without `--output`.
     written: Option<PathBuf>,
-    /// Slew limit in the robot.toml that was given, deg/s.
+    /// Slew limit of the given robot.toml, deg/s.
     #[serde(skip)]
     slew: f64,
 }
@@ -111,7 +112,7 @@ struct Report {
 /// Measures a servo and prints the result.
 ///
 /// # Errors
-/// Fails for a film that cannot be read or does not show the steps of the servo, or a file that cannot be written.
+/// Fails if a film cannot be read or does not show the servo's steps, or if the output cannot be written.
 pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let text = args.robot.text()?;
     let robot = args.robot.load()?;
@@ -127,8 +128,8 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
     let spinner = Spinner::new("reading the pictures");
     let analyse_film = |path: &Path| -> Result<(AnalysedFilm, MeasuredServo), Failure> {
         let NamedFilm { name, analysis } = args.filming.analyse(path, setup)?;
-        let measured_servo = MeasuredServo::of(&analysis.path, jig)
-            .map_err(|trouble| film_failure(&name, &trouble))?;
+        let measured_servo =
+            MeasuredServo::of(&analysis.path, jig).map_err(|error| film_failure(&name, &error))?;
         Ok((analysis, measured_servo))
     };
     let (analysis, free_servo) = analyse_film(&args.film)?;
@@ -137,7 +138,7 @@ pub fn measure_servo(args: ServoArgs) -> Result<(), Failure> {
             let (_, loaded_servo) = analyse_film(path)?;
             let torque_n_mm = grams / 1000.0 * GRAVITY * arm;
             let stall = free_servo.stall_torque(&loaded_servo, torque_n_mm);
-            Some(stall.map_err(|trouble| Failure::Input(trouble.to_string()))?)
+            Some(stall.map_err(|error| Failure::Input(error.to_string()))?)
         }
         _ => None,
     };
@@ -261,7 +262,7 @@ impl Report {
     }
 
     fn text(&self) -> String {
-        let [[left_rate, _], [right_rate, _]] = self.rates;
+        let [[ccw_rate, _], [cw_rate, _]] = self.rates;
         let mut text = format!(
             "{} at {} V, {:.0} pictures a second; card {:.0} mm above the strips, by its size {:.0} mm\n\n{}\n",
             self.servo,
@@ -273,7 +274,7 @@ impl Report {
         );
         let _ = writeln!(
             text,
-            "counter-clockwise {left_rate:.0} deg/s, clockwise {right_rate:.0} deg/s; a step of {:.1} us moved nothing",
+            "counter-clockwise {ccw_rate:.0} deg/s, clockwise {cw_rate:.0} deg/s; a step of {:.1} us moved nothing",
             self.still_us
         );
         let [difference, error] = self.sides;

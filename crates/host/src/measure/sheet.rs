@@ -8,7 +8,7 @@ use lizard_measure::Paper;
 use crate::Failure;
 use crate::shared::files;
 
-/// The paper in a printer, as it is named in a command.
+/// The printer's paper size, as named on the command line.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default)]
 enum PaperName {
     /// 297 x 210 mm

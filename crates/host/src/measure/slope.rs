@@ -71,7 +71,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let spinner = Spinner::new("reading the pictures");
     let slide_of = |path: &PathBuf| {
         let NamedFilm { name, analysis } = args.filming.analyse(path, setup)?;
-        let slide = Slide::of(&analysis).map_err(|trouble| film_failure(&name, &trouble))?;
+        let slide = Slide::of(&analysis).map_err(|error| film_failure(&name, &error))?;
         Ok((name, slide))
     };
     let slides: Vec<(String, Slide)> = args
@@ -84,7 +84,7 @@ pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     json::print_json_or_text(args.json, &report, || report.text())
 }
 
-/// The mean of figures that share a systematic error, such as that of the level board; `None` if `figures` is empty.
+/// Averages figures that share a systematic error, such as that of the level board; `None` if `figures` is empty.
 fn mean_figure(figures: &[Figure]) -> Option<Figure> {
     let count = figures.len() as f64;
     let mean_of =
@@ -122,10 +122,11 @@ impl Report {
             ));
             if let Some(backward) = backward {
                 let value = backward.value / forward.value;
-                let error = (backward.error / backward.value).hypot(forward.error / forward.value);
+                let relative_error =
+                    (backward.error / backward.value).hypot(forward.error / forward.value);
                 let ratio = Figure {
                     value,
-                    error: value * error,
+                    error: value * relative_error,
                 };
                 let key = "friction_back_over_forward";
                 figures.push(MeasuredKey::new(

@@ -20,8 +20,8 @@ const FFPROBE_ARGUMENTS: &str =
 /// Largest width or height of a frame, px.
 const MAX_SIZE_PX: usize = 10_000;
 
-/// Calls `handle_picture` for each frame of a video, with its time, s. The times are computed from `frame_rate`, frames
-/// per second, or read from the video if it is `None`.
+/// Calls `handle_picture` with each frame of a video and the frame's time in seconds. The times are computed from
+/// `frame_rate`, in frames per second, or read from the video if it is `None`.
 ///
 /// # Errors
 /// Fails if ffmpeg or ffprobe is missing or cannot read the video, or if `handle_picture` fails.
@@ -54,7 +54,7 @@ pub(super) fn for_each_picture(
         .read_line(&mut line)
         .ok()
         .and_then(|_| parse_size(&line));
-    let outcome = match frame_size {
+    let result = match frame_size {
         None => Err(unreadable("it has no frames")),
         Some([width, height]) => (0..)
             .try_fold((), |(), i: usize| {
@@ -83,10 +83,10 @@ pub(super) fn for_each_picture(
     drop(stream);
     let _ = ffmpeg.kill();
     let _ = ffmpeg.wait();
-    outcome
+    result
 }
 
-/// Asks ffprobe for the times of a video's frames, s.
+/// Reads the times of a video's frames with ffprobe, s.
 fn frame_times(video: &Path) -> Result<Vec<f64>, Failure> {
     let output = Command::new("ffprobe")
         .args(FFPROBE_ARGUMENTS.split(' '))

@@ -146,7 +146,7 @@ impl Args {
     }
 }
 
-/// The report on one design, lengths in mm.
+/// The report on one design; lengths in mm.
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]
@@ -163,14 +163,14 @@ struct Report {
 impl Report {
     fn new(proportions: Proportions, l0: f64) -> Self {
         let d = proportions.scale_for_base(l0);
-        let bars = proportions.at_scale(d);
+        let five_bar = proportions.at_scale(d);
         Self {
             proportions,
             d,
-            l0: bars.base,
-            l1: bars.left_crank_length,
-            l2: bars.left_coupler_length,
-            performance: Performance::of(&bars, FINE_RING_COUNT),
+            l0: five_bar.base,
+            l1: five_bar.left_crank_length,
+            l2: five_bar.left_coupler_length,
+            performance: Performance::of(&five_bar, FINE_RING_COUNT),
         }
     }
 
@@ -237,7 +237,7 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
     }
 }
 
-/// The line of text about the paper's claim "LCI > 0.7".
+/// Formats the line about the paper's claim "LCI > 0.7".
 fn claim_verdict(lci: &Conditioning, r_mic: f64) -> String {
     let mean_verdict = if lci.mean > CLAIMED_LCI {
         "holds"
@@ -387,7 +387,7 @@ fn print_ranking(
             given_design.score = best_values.score(&given_design);
             let rank = 1 + designs
                 .iter()
-                .filter(|d| d.score > given_design.score + 1e-9)
+                .filter(|design| design.score > given_design.score + 1e-9)
                 .count();
             writeln!(out, "\nthe given design:")?;
             write_row(out, &rank.to_string(), &given_design)?;

@@ -56,7 +56,7 @@ struct ModeSolution {
     why: Vec<String>,
 }
 
-/// Prints the servo angles that put head and tail at these points (mm).
+/// Prints the servo angles that put head and tail at these points, mm in the chassis frame.
 ///
 /// # Errors
 /// Fails if a point is out of reach, or if the output cannot be written.
@@ -94,15 +94,15 @@ fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     }
 }
 
-/// Checks an inverse solution: computes its error and its margin, and lists the robot's limits that it breaks.
+/// Checks an inverse solution: computes its error and its margin, and lists the robot's limits that it violates.
 fn check_solution(
     robot: &Robot,
     end: End,
     local_point: Vector,
     solution: InverseSolution,
 ) -> ModeSolution {
-    let bars = robot.lizard().end(end);
-    let pose = bars.forward_in(
+    let five_bar = robot.lizard().end(end);
+    let pose = five_bar.forward_in(
         solution.assembly_mode,
         solution.theta_left,
         solution.theta_right,

@@ -48,7 +48,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    drive: velocity::DriveArgs,
+    servo_motion: velocity::ServoMotionArgs,
     #[command(flatten)]
     robot: RobotFile,
 }
@@ -89,6 +89,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Subject::Joints => solve::print(&robot, pose.as_ref(), args.json),
         Subject::Singularities => singularity::print(&robot, &solve_pose()?, args.json),
         Subject::Freedoms => mobility::print(lizard, &solve_pose()?, args.json),
-        Subject::Rates => velocity::print(lizard, &solve_pose()?, &args.drive.into(), args.json),
+        Subject::Rates => {
+            velocity::print(lizard, &solve_pose()?, &args.servo_motion.into(), args.json)
+        }
     }
 }

@@ -9,7 +9,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use crate::paper::poses::TimedPose;
 use crate::shared::number::round_decimals;
 
-/// One object of `lizard pose --json`. If the pose has no solution, the fields of the solution are null. `seconds` is
+/// A line of `lizard pose --json`. If the pose has no solution, the fields of the solution are null. `seconds` is
 /// present only if the stream has this column.
 #[derive(Default, serde::Serialize)]
 pub struct PoseLine {
@@ -36,6 +36,7 @@ struct SliderState {
     s: f64,
 }
 
+/// The passive angles of all legs.
 #[derive(serde::Serialize)]
 struct Legs {
     lf: LegAngles,
@@ -66,7 +67,7 @@ impl Serialize for MarginMap {
 }
 
 impl PoseLine {
-    /// Makes the object of a pose, with or without a solution.
+    /// Creates the line of a pose, with or without a solution.
     pub fn new(
         robot: &Robot,
         seconds: Option<f64>,
@@ -113,7 +114,7 @@ impl PoseLine {
     }
 }
 
-/// The heading of the table, for the columns of [`format_row`].
+/// Formats the heading of the table, with the columns of [`format_row`].
 pub fn table_heading(has_time: bool) -> String {
     let seconds = if has_time { " seconds |" } else { "" };
     format!(
@@ -157,7 +158,7 @@ pub fn format_row(
     };
     let (head, tail) = (solution.head_point(), solution.tail_point());
     let (least_check, least_margin) = solution.margins.min();
-    for block in [
+    for values in [
         [
             solution.theta2(),
             solution.theta3(),
@@ -167,7 +168,7 @@ pub fn format_row(
         [head.x, head.y, tail.x, tail.y],
     ] {
         line.push_str(" |");
-        for value in block {
+        for value in values {
             let _ = write!(line, " {:8.3}", round_decimals(value, 3));
         }
     }

@@ -6,9 +6,9 @@ use std::io::{BufRead, Read};
 use lizard_kinematics::Pose;
 
 use crate::Failure;
-use crate::shared::pose_args::{ANGLE_NAMES, NumberFault, Quantity};
+use crate::shared::pose_args::{ANGLE_NAMES, NumberError, Quantity};
 
-/// Name of a column that may accompany the angles, as in `lizard gaits --trace`.
+/// Name of the optional column with the time, as in `lizard gaits --trace`.
 const SECONDS: &str = "seconds";
 
 /// A column of the stream: one of the four angles, or the time.
@@ -72,7 +72,7 @@ impl<R: BufRead> PoseReader<R> {
     /// Creates the iterator and reads the header, if there is one.
     ///
     /// # Errors
-    /// Fails if the input is empty, cannot be read, or its header is wrong.
+    /// Fails if the input is empty or cannot be read, or if its header is invalid.
     pub fn new(input: R) -> Result<Self, Failure> {
         let mut poses = Self {
             input,
@@ -202,7 +202,7 @@ impl<R: BufRead> PoseReader<R> {
                 return Err(failure_at(field, "no value".to_string()));
             }
             let number_failure =
-                |fault: NumberFault| failure_at(field, format!("\"{text}\" {fault}"));
+                |error: NumberError| failure_at(field, format!("\"{text}\" {error}"));
             match column {
                 Column::Angle(servo) => {
                     angles[servo] = Quantity::ANGLE.parse(text).map_err(number_failure)?;
@@ -238,7 +238,7 @@ impl<R: BufRead> Iterator for PoseReader<R> {
     }
 }
 
-/// The text of a field without surrounding blanks and quotes.
+/// Removes surrounding white space and quotes from a field.
 fn trim_quotes(field: &str) -> &str {
     let field = field.trim();
     field

@@ -57,7 +57,7 @@ impl Matrix {
         for (name, row) in self.rows.iter().zip(&self.values) {
             text += &format!("\n  {name:7}");
             for value in row {
-                // Rounding errors are printed as a point.
+                // A value that is zero but for rounding errors is printed as a point.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
                     false => format!(" {:9.2}", round_decimals(*value, 2)),
@@ -98,7 +98,7 @@ struct Factors {
 #[derive(Serialize)]
 struct NearestSingularity {
     what: String,
-    /// Distance in the servos' angles, degrees.
+    /// Euclidean distance in the servo angles, degrees.
     distance: f64,
     /// Turn of each servo to the singular pose, in servo order, degrees.
     turn: [f64; 4],
@@ -125,14 +125,14 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     let leg = robot.lizard().leg;
     let mut nearest = vec![];
     for end in End::ALL {
-        let (bars, servos, sign) = (robot.lizard().end(end), end.servos(), end.sign());
+        let (five_bar, servos, sign) = (robot.lizard().end(end), end.servos(), end.sign());
         let angles = end.pick(solution.pose.into()).map(|angle| sign * angle);
         for kind in [
             Singularity::Couplers,
             Singularity::LeftArm,
             Singularity::RightArm,
         ] {
-            if let Some((distance, pose)) = nearest_singularity(&bars, kind, angles) {
+            if let Some((distance, pose)) = nearest_singularity(&five_bar, kind, angles) {
                 let mut turn = [0.0; 4];
                 turn[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
                 turn[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
@@ -187,7 +187,7 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
 /// `None` if there is no such pose. Scans the singularity curves over all left crank angles, then repeats the scan
 /// around the nearest pose with smaller steps.
 pub fn nearest_singularity(
-    bars: &FiveBar,
+    five_bar: &FiveBar,
     kind: Singularity,
     angles: [f64; 2],
 ) -> Option<(f64, SingularPose)> {
@@ -198,30 +198,30 @@ pub fn nearest_singularity(
         );
         (left.hypot(right), pose)
     };
-    let closer_of = |a: (f64, SingularPose), b: (f64, SingularPose)| if b.0 < a.0 { b } else { a };
+    let nearer_of = |a: (f64, SingularPose), b: (f64, SingularPose)| if b.0 < a.0 { b } else { a };
     let scan = |centre: f64, half_range: f64, step: f64| {
         let step_count = (half_range / step).round() as i32;
         (-step_count..=step_count)
-            .flat_map(|i| bars.singular_poses_with(centre + f64::from(i) * step))
+            .flat_map(|i| five_bar.singular_poses_with(centre + f64::from(i) * step))
             .filter(|pose| pose.kind == kind)
             .map(with_distance)
-            .reduce(closer_of)
+            .reduce(nearer_of)
     };
     let mut best = scan(0.0, 180.0, 0.25);
     let mut step = 0.25;
     for _ in 0..4 {
         if let Some((_, pose)) = best {
             let finer_best = scan(pose.theta_left, 2.0 * step, step / 20.0);
-            best = best.into_iter().chain(finer_best).reduce(closer_of);
+            best = best.into_iter().chain(finer_best).reduce(nearer_of);
             step /= 20.0;
         }
     }
-    let coinciding_poses = bars
+    let coinciding_poses = five_bar
         .poses_with_coinciding_tips()
         .filter(|_| kind == Singularity::Couplers);
     best.into_iter()
         .chain(coinciding_poses.map(with_distance))
-        .reduce(closer_of)
+        .reduce(nearer_of)
 }
 
 fn format_text(report: &Report) -> String {

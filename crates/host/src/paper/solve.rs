@@ -28,7 +28,7 @@ const MAX_WAITING_BLOCKS: usize = 32;
 /// Fails for an invalid pose or line of the stream, or an output that cannot be written.
 pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Failure> {
     match pose {
-        Some(pose) => Ok(io::stdout().write_all(&solve_one(robot, pose, is_json)?)?),
+        Some(pose) => Ok(io::stdout().write_all(&solve_pose(robot, pose, is_json)?)?),
         None if io::stdin().is_terminal() => Err(Failure::Input(
             "give a pose with --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
                 .to_string(),
@@ -38,7 +38,7 @@ pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Fa
 }
 
 /// Solves one pose and returns the output, as a page of text or a JSON object.
-fn solve_one(robot: &Robot, pose: &Pose, is_json: bool) -> Result<Vec<u8>, Failure> {
+fn solve_pose(robot: &Robot, pose: &Pose, is_json: bool) -> Result<Vec<u8>, Failure> {
     let outcome = robot.lizard().solve(pose);
     if !is_json {
         return Ok(pose_line::format_page(robot, pose, &outcome).into_bytes());
@@ -87,12 +87,12 @@ fn solve_all(
     let mut batch = Vec::with_capacity(BATCH_SIZE);
     loop {
         batch.clear();
-        let mut first_failure = None;
+        let mut read_failure = None;
         for pose in poses.by_ref().take(BATCH_SIZE) {
             match pose {
                 Ok(pose) => batch.push(pose),
                 Err(failure) => {
-                    first_failure = Some(failure);
+                    read_failure = Some(failure);
                     break;
                 }
             }
@@ -107,7 +107,7 @@ fn solve_all(
                 return Ok(());
             }
         }
-        match first_failure {
+        match read_failure {
             Some(failure) => return Err(failure),
             None if is_last => return Ok(()),
             None => {}

@@ -16,7 +16,7 @@ const MAX_STEP_TURN_DEG: f64 = 0.04;
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Servos, for --show rates; all 0 unless given")]
-pub struct DriveArgs {
+pub struct ServoMotionArgs {
     /// Rate of theta1 (A1), deg/s
     #[arg(long, default_value_t = 0.0, hide_default_value = true, value_name = "DEG/S", value_parser = Quantity::RATE.parser())]
     omega1: f64,
@@ -56,8 +56,8 @@ struct Row {
     acceleration_deviation: Option<f64>,
 }
 
-impl From<DriveArgs> for ServoMotion {
-    fn from(args: DriveArgs) -> Self {
+impl From<ServoMotionArgs> for ServoMotion {
+    fn from(args: ServoMotionArgs) -> Self {
         Self {
             rate: [args.omega1, args.omega4, args.omega8, args.omega5],
             acceleration: [args.alpha1, args.alpha4, args.alpha8, args.alpha5],
@@ -72,16 +72,16 @@ impl From<DriveArgs> for ServoMotion {
 pub fn print(
     lizard: &Lizard,
     solution: &Solution,
-    drive: &ServoMotion,
+    servo_motion: &ServoMotion,
     is_json: bool,
 ) -> Result<(), Failure> {
-    let singularity_margin = solution.margins.type2[0].min(solution.margins.type2[1]);
-    if singularity_margin < 1e-9 {
+    let type2_margin = solution.margins.type2[0].min(solution.margins.type2[1]);
+    if type2_margin < 1e-9 {
         return Err(Failure::Impossible(
             "the couplers line up: rates do not follow from the servos'".to_string(),
         ));
     }
-    let rows = compute_rows(lizard, solution, drive);
+    let rows = compute_rows(lizard, solution, servo_motion);
     json::print_json_or_text(is_json, &rows, || format_text(&rows))
 }
 
@@ -112,7 +112,7 @@ fn format_text(rows: &[Row]) -> String {
     page
 }
 
-/// Name, unit and value of each joint and coordinate.
+/// Lists the name, unit and value of each joint and coordinate.
 fn joint_values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
     let (head, tail) = (solution.head_point(), solution.tail_point());
     [
@@ -131,7 +131,7 @@ fn joint_values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] 
     ]
 }
 
-/// Rate and acceleration of each joint and coordinate, in the order of [`values`].
+/// Lists the rate and acceleration of each joint and coordinate, in the order of [`joint_values`].
 fn joint_rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
     let rate_and_acceleration =
         |derivative: lizard_kinematics::Derivative<f64>| (derivative.rate, derivative.acceleration);
@@ -152,7 +152,7 @@ fn joint_rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
 }
 
 /// Computes rates and accelerations in closed form, and compares them with finite differences of neighbouring poses.
-fn compute_rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Vec<Row> {
+fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion) -> Vec<Row> {
     let start_angles = <[f64; 4]>::from(solution.pose);
     let largest_magnitude = |values: &[f64; 4]| {
         values
@@ -161,12 +161,12 @@ fn compute_rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Ve
     };
     // If the servos stand still, the quotients are infinite and do not limit the step.
     let step_s = MAX_STEP_S
-        .min(MAX_STEP_TURN_DEG / largest_magnitude(&drive.rate))
-        .min((MAX_STEP_TURN_DEG / largest_magnitude(&drive.acceleration)).sqrt());
+        .min(MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.rate))
+        .min((MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.acceleration)).sqrt());
     let values_at = |steps: f64| {
         let t = steps * step_s;
         let angles: [f64; 4] = std::array::from_fn(|i| {
-            start_angles[i] + drive.rate[i] * t + drive.acceleration[i] * t * t / 2.0
+            start_angles[i] + servo_motion.rate[i] * t + servo_motion.acceleration[i] * t * t / 2.0
         });
         lizard
             .solve(&Pose::from(angles))
@@ -177,7 +177,7 @@ fn compute_rows(lizard: &Lizard, solution: &Solution, drive: &ServoMotion) -> Ve
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
-    let rates_and_accelerations = joint_rates(&solution.derivatives(drive));
+    let rates_and_accelerations = joint_rates(&solution.derivatives(servo_motion));
     joint_values(solution)
         .into_iter()
         .zip(rates_and_accelerations)

@@ -5,10 +5,10 @@ use std::io;
 /// The reason why a subcommand ended without a result.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// An argument or a line of input is wrong.
+    /// An argument or a line of input is invalid.
     #[error("{0}")]
     Input(String),
-    /// robot.toml is missing or wrong.
+    /// robot.toml is missing or invalid.
     #[error("{0}")]
     Robot(#[from] lizard_robot::Error),
     /// The command is valid, but could not be carried out.
@@ -21,7 +21,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The program's exit code: 2 for wrong input, 1 for everything else.
+    /// The program's exit code: 2 for invalid input, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(_) | Self::Robot(_) => 2,

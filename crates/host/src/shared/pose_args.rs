@@ -35,26 +35,26 @@ impl Quantity {
 
     /// Returns a parser of this quantity for clap.
     pub fn parser(self) -> impl Fn(&str) -> Result<f64, String> + Clone {
-        move |text| self.parse(text).map_err(|fault| format!("it {fault}"))
+        move |text| self.parse(text).map_err(|error| format!("it {error}"))
     }
 
     /// Parses a number and checks its bounds.
     ///
     /// # Errors
     /// Fails if the text is not a number, or if the number is out of bounds; NaN and infinity are out of bounds.
-    pub fn parse(self, text: &str) -> Result<f64, NumberFault> {
+    pub fn parse(self, text: &str) -> Result<f64, NumberError> {
         match text.parse::<f64>() {
             Ok(value) if value.abs() <= self.max => Ok(value),
-            Ok(value) if !value.is_finite() => Err(NumberFault::NotFinite),
-            Ok(_) => Err(NumberFault::OutOfRange(self)),
-            Err(_) => Err(NumberFault::NotANumber),
+            Ok(value) if !value.is_finite() => Err(NumberError::NotFinite),
+            Ok(_) => Err(NumberError::OutOfRange(self)),
+            Err(_) => Err(NumberError::NotANumber),
         }
     }
 }
 
 /// The reason why a typed number is refused. The message is the end of a sentence that begins with the number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NumberFault {
+pub enum NumberError {
     /// The text is not a number.
     NotANumber,
     /// The number is infinite, NaN, or too large for an f64.
@@ -63,7 +63,7 @@ pub enum NumberFault {
     OutOfRange(Quantity),
 }
 
-impl fmt::Display for NumberFault {
+impl fmt::Display for NumberError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotANumber => f.write_str("is not a number"),
@@ -75,7 +75,7 @@ impl fmt::Display for NumberFault {
     }
 }
 
-impl std::error::Error for NumberFault {}
+impl std::error::Error for NumberError {}
 
 /// The options `--theta1`, `--theta4`, `--theta8` and `--theta5`.
 #[derive(clap::Args, Debug, Default)]

@@ -25,9 +25,8 @@ const RING_COUNT: usize = 16;
 /// Draw all charts into a folder, as SVG.
 ///
 /// workspace (with the maximal inscribed circle), workspaces (of tail, body and legs), conditioning (the LCI map),
-/// performance (over the whole design space), singularity (with the gaits'
-/// paths), stroke (slider travel in each gait), top-view (at neutral, or at the
-/// pose given).
+/// performance (over the whole design space), singularity (with the gaits' paths), stroke (slider travel in each gait),
+/// top-view (at neutral, or at the pose given).
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard draw charts docs/charts")]
@@ -54,7 +53,7 @@ struct ChartFiles {
 /// Draws all charts and writes them.
 ///
 /// # Errors
-/// Fails for a wrong robot.toml, or a folder or a file that cannot be written.
+/// Fails if robot.toml is invalid, or if the folder or a file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.to_pose().unwrap_or_else(|| robot.neutral_pose());

@@ -1,15 +1,16 @@
 //! The performance charts over the whole design space.
 
-use lizard_paper::design::{ChartPoint, PROPORTION_SUM, Proportions};
-
 use std::collections::HashMap;
 
+use lizard_paper::design::{ChartPoint, PROPORTION_SUM, Proportions};
 use svg::node::element::Group;
 
 use crate::shared::ink::{add_title, circle, line, outlined, svg_page, text_start};
 use crate::shared::plot::{Axis, ColourScale, Plot, VIRIDIS};
 
+/// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1530.0, 570.0);
+/// Width and height of each panel, px.
 const PANEL_SIZE: f64 = 340.0;
 
 /// Draws workspace area, radius of the inscribed circle, and mean conditioning index over r1 and r2.
@@ -76,11 +77,11 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
                 .map(|value| scale.colour(value))
         });
         for r3 in [0.1, 0.2, 0.3, 0.4] {
-            let (from, to) = (
+            let (start, end) = (
                 plot.page_point(0.0, PROPORTION_SUM - r3),
                 plot.page_point(PROPORTION_SUM - r3, 0.0),
             );
-            group = group.add(line(from, to, "white", 0.8).set("stroke-dasharray", "3 4"));
+            group = group.add(line(start, end, "white", 0.8).set("stroke-dasharray", "3 4"));
         }
         let (x, y) = plot.page_point(Proportions::PAPER.r1, Proportions::PAPER.r2);
         group = group

@@ -15,6 +15,7 @@ use crate::shared::ink::{
 };
 use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 
+/// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1120.0, 900.0);
 const AXES: [Axis<'static>; 2] = [
     Axis::new(40.0, "x, mm to the right of the plate's middle"),
@@ -24,7 +25,7 @@ const AXES: [Axis<'static>; 2] = [
 const HALF_WIDTH: f64 = 160.0;
 /// Width of a cell of the drawn square, mm.
 const CELL_WIDTH: f64 = 2.0;
-/// Largest turn of a servo from neutral that is tried, to either side, deg.
+/// Range of the servo turns that are tried, deg to either side of neutral.
 const MAX_TURN_DEG: i32 = 80;
 /// Colours of the tail's areas: first the area that the linkage allows, then the area that the guard accepts.
 const TAIL_COLOURS: [&str; 2] = ["#cfe3f1", "#4a9bd0"];

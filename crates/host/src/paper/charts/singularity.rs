@@ -9,6 +9,7 @@ use crate::shared::ink::{
 };
 use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 
+/// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1500.0, 860.0);
 /// Range of the angles in the left panel, deg.
 const ANGLE_RANGE: (f64, f64) = (0.0, 180.0);
@@ -154,7 +155,7 @@ pub fn draw_singularities(robot: &Robot) -> String {
 }
 
 /// The least margin of the head and the front legs, with the tail at neutral. `None` if the pose is impossible, or
-/// breaks a limit other than a slider's stroke.
+/// violates a limit other than a slider's stroke.
 fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
@@ -162,7 +163,7 @@ fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
         ..robot.neutral_pose()
     };
     let solution = robot.lizard().solve(&pose).ok()?;
-    let breaks_limit = robot
+    let violates_limit = robot
         .limits()
         .violations(&solution)
         .any(|violation| !matches!(violation.check, Check::StrokeLeft | Check::StrokeRight));
@@ -174,7 +175,7 @@ fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
         all_margins.leg[0],
         all_margins.leg[1],
     ];
-    (!breaks_limit).then(|| margins.into_iter().fold(1.0, f64::min))
+    (!violates_limit).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
 /// The paths of all gaits in the plane of theta1 and theta4, each with the names of its gaits. A gait and its reverse
@@ -185,7 +186,7 @@ fn gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
         let path = gait_path(gait);
         let same_path = paths
             .iter_mut()
-            .find(|(_, other_path)| are_same_path(other_path, &path));
+            .find(|(_, known_path)| are_same_path(known_path, &path));
         match same_path {
             Some((names, _)) => {
                 names.push_str(", ");
@@ -245,18 +246,18 @@ fn square_around(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
 
 /// Draws the singular curves within the plot, as short segments.
 fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
-    let bars = robot.lizard().end(End::Head);
+    let five_bar = robot.lizard().end(End::Head);
     group = draw_sweep(group, plot, |theta1| {
-        bars.singular_poses_with(theta1).collect()
+        five_bar.singular_poses_with(theta1).collect()
     });
     // A sweep over theta1 has few points on steep curves, so a sweep over theta4 follows. The second sweep uses the
     // mirrored five-bar, in which left and right are exchanged.
-    let mirrored_bars = FiveBar {
-        base: bars.base,
-        left_crank_length: bars.right_crank_length,
-        left_coupler_length: bars.right_coupler_length,
-        right_coupler_length: bars.left_coupler_length,
-        right_crank_length: bars.left_crank_length,
+    let mirrored_five_bar = FiveBar {
+        base: five_bar.base,
+        left_crank_length: five_bar.right_crank_length,
+        left_coupler_length: five_bar.right_coupler_length,
+        right_coupler_length: five_bar.left_coupler_length,
+        right_crank_length: five_bar.left_crank_length,
     };
     group = draw_sweep(group, plot, |theta4| {
         let unmirror = |pose: SingularPose| SingularPose {
@@ -268,12 +269,12 @@ fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
             theta_left: wrap(180.0 - pose.theta_right),
             theta_right: theta4,
         };
-        mirrored_bars
+        mirrored_five_bar
             .singular_poses_with(180.0 - theta4)
             .map(unmirror)
             .collect()
     });
-    for pose in bars.poses_with_coinciding_tips() {
+    for pose in five_bar.poses_with_coinciding_tips() {
         if pose.theta_left >= 0.0 && pose.theta_right >= 0.0 {
             let position = plot.page_point(pose.theta_left, pose.theta_right);
             group = group.add(cross(position, 7.0, DARK, 3.0));
@@ -282,8 +283,8 @@ fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     group
 }
 
-/// Draws a segment from each singular pose to the nearest singular pose of the same kind at the previous angle, if
-/// the two are close.
+/// Sweeps an angle from 0 to 180 deg, and connects each singular pose to the nearest pose of the same kind at the
+/// previous angle, if the two are close.
 fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
     const STEP_DEG: f64 = 0.5;
     let is_inside = |pose: &&SingularPose| {

@@ -8,7 +8,9 @@ use crate::shared::number::round_decimals;
 use crate::shared::plot::{Axis, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 
 const COLUMN_COUNT: usize = 4;
+/// Width and height of a panel, px.
 const PANEL_SIZE: (f64, f64) = (255.0, 150.0);
+/// Distances between the left edges and between the upper edges of neighbouring panels, px.
 const PANEL_PITCH: (f64, f64) = (330.0, 240.0);
 const LEFT_COLOUR: &str = "#0072b2";
 const RIGHT_COLOUR: &str = "#d55e00";
@@ -70,14 +72,14 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
         ),
     );
     group = plot.draw_grid(group, &x_axis, &y_axis);
-    for (from, to) in [
+    for (low, high) in [
         (plot.y_range.0, robot.limits().stroke_min),
         (robot.limits().stroke_max, plot.y_range.1),
     ] {
-        let (top, bottom) = (plot.page_point(0.0, to), plot.page_point(0.0, from));
+        let (top_left, bottom_left) = (plot.page_point(0.0, high), plot.page_point(0.0, low));
         group = group.add(rectangle(
-            top,
-            (plot.size.0, bottom.1 - top.1),
+            top_left,
+            (plot.size.0, bottom_left.1 - top_left.1),
             IMPOSSIBLE_COLOUR,
         ));
     }

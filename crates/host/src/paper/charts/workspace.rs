@@ -8,6 +8,7 @@ use svg::node::element::{Circle as Ring, Group};
 use crate::shared::ink::{DARK, GREY, add_title, circle, outlined, svg_page, text_start};
 use crate::shared::plot::{Axis, ColourScale, IMPOSSIBLE_COLOUR, Plot, VIRIDIS, draw_legend_entry};
 
+/// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1120.0, 900.0);
 const X_AXIS: Axis<'static> = Axis::new(20.0, "x, mm from the middle of l0");
 const Y_AXIS: Axis<'static> = Axis::new(20.0, "y, mm");
@@ -17,8 +18,8 @@ const SHAFT_COLOUR: &str = "#0072b2";
 
 /// Draws the limits of each arm, the workspace between them, the inscribed circle, and the head at neutral.
 pub fn draw_workspace(robot: &Robot) -> String {
-    let bars = robot.lizard().end(End::Head);
-    let workspace = Workspace::of(&bars);
+    let five_bar = robot.lizard().end(End::Head);
+    let workspace = Workspace::of(&five_bar);
     let half_range = (workspace.outer_radius / 20.0).ceil() * 20.0 + 20.0;
     let plot = Plot {
         corner: (90.0, 90.0),
@@ -32,7 +33,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
             .contains(Vector::new(x, y))
             .then_some(if y >= 0.0 { "#cfe3f1" } else { "#e6e3df" })
     });
-    for shaft in [bars.left_shaft(), bars.right_shaft()] {
+    for shaft in [five_bar.left_shaft(), five_bar.right_shaft()] {
         for radius in [workspace.inner_radius, workspace.outer_radius] {
             group = group
                 .add(draw_ring(&plot, shaft, radius, GREY, 1.2).set("stroke-dasharray", "5 4"));
@@ -52,7 +53,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
         "Theoretical workspace of the head",
         "all points that both arms reach; the tail has the same behind",
     );
-    let performance = Performance::of(&bars, 32);
+    let performance = Performance::of(&five_bar, 32);
     let legend_x = 840.0;
     group = draw_legend_entry(group, (legend_x, 120.0), GREY, "5 4", "limits of each arm");
     group = draw_legend_entry(
@@ -84,8 +85,8 @@ pub fn draw_workspace(robot: &Robot) -> String {
 
 /// Draws the local conditioning index over the upper workspace, with outward elbows.
 pub fn draw_conditioning(robot: &Robot) -> String {
-    let bars = robot.lizard().end(End::Head);
-    let workspace = Workspace::of(&bars);
+    let five_bar = robot.lizard().end(End::Head);
+    let workspace = Workspace::of(&five_bar);
     let half_range = (workspace.outer_radius / 20.0).ceil() * 20.0;
     let plot = Plot {
         corner: (90.0, 90.0),
@@ -103,14 +104,14 @@ pub fn draw_conditioning(robot: &Robot) -> String {
         let point = Vector::new(x, y);
         workspace
             .contains(point)
-            .then(|| match bars.pose_at_point(point) {
-                Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&bars, point)),
+            .then(|| match five_bar.pose_at_point(point) {
+                Ok(pose) if y >= 0.0 && pose.gap.x > 0.0 => scale.colour(lci(&five_bar, point)),
                 _ => IMPOSSIBLE_COLOUR,
             })
     });
-    let performance = Performance::of(&bars, 64);
+    let performance = Performance::of(&five_bar, 64);
     if let (Some(mic), Some(lci_stats)) = (workspace.inscribed_circle(), performance.lci) {
-        let claim_circle = Circle {
+        let claimed_circle = Circle {
             radius: lci_stats.radius_above,
             ..mic
         };
@@ -119,14 +120,20 @@ pub fn draw_conditioning(robot: &Robot) -> String {
             .add(draw_ring(&plot, mic.centre, mic.radius, CIRCLE_COLOUR, 3.0))
             .add(draw_ring(
                 &plot,
-                claim_circle.centre,
-                claim_circle.radius,
+                claimed_circle.centre,
+                claimed_circle.radius,
                 "white",
                 5.0,
             ))
             .add(
-                draw_ring(&plot, claim_circle.centre, claim_circle.radius, DARK, 2.0)
-                    .set("stroke-dasharray", "7 4"),
+                draw_ring(
+                    &plot,
+                    claimed_circle.centre,
+                    claimed_circle.radius,
+                    DARK,
+                    2.0,
+                )
+                .set("stroke-dasharray", "7 4"),
             );
         let legend_x = 850.0;
         group = draw_legend_entry(
