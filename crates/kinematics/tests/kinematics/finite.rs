@@ -18,7 +18,7 @@ fn any_length() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Five-five_bar with links of similar lengths, most of which close, and five-bar with links of unrelated
+/// Five-bars with links of similar lengths, most of which close, and five-bars with links of unrelated
 /// lengths.
 fn any_five_bar() -> impl Strategy<Value = FiveBar> {
     let any_scale = || prop_oneof![Just(None), any_length().prop_map(Some)];

@@ -1,4 +1,4 @@
-//! Five-five_bar or sliders that are computed together in lanes have the same bits as those that are computed alone, and
+//! Five-bars or sliders that are computed together in lanes have the same bits as those that are computed alone, and
 //! lanes that do not close do not affect the others.
 
 use lizard_kinematics::{End, Lanes, Lizard, Side, Vector};
