@@ -1,4 +1,4 @@
-// A second robot on the same floor: the firmware's core with the same robot and another gait.
+// A second robot on the same floor: the firmware's core, which walks another gait than the page's robot.
 import { isRefused, type Floor, type Frame, Robot } from './robot';
 
 /** Frames of 20 ms from power-on until the robot stands. */
@@ -16,15 +16,15 @@ export class Companion {
   ) {}
 
   /**
-   * Creates a companion that stands at the start, on the given floor, with the given servos. Throws an error for the
-   * user.
+   * Creates a companion that stands at the start, on the given floor, with the given servo model. Throws an error whose
+   * message is for the user.
    */
-  static create(toml: string, floor: Floor, servos: string, volts: number): Companion {
+  static create(toml: string, floor: Floor, servoModel: string, volts: number): Companion {
     const robot = new Robot();
     const result = robot.read(toml);
     if (isRefused(result)) throw new Error(result.refused);
     robot.setFloor(floor);
-    robot.setServos(servos);
+    robot.setServos(servoModel);
     robot.runCore();
     const companion = new Companion(robot, volts);
     for (let frame = 0; frame < WAKE_FRAMES; frame++) companion.step();
@@ -33,7 +33,7 @@ export class Companion {
     return companion;
   }
 
-  /** Frees the companion's robot; the last frame stays. */
+  /** Frees the companion's robot; `frame` stays valid. */
   end(): void {
     this.robot.free();
   }

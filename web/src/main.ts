@@ -18,7 +18,7 @@ import { messageOf } from './trouble';
 import { Alarm } from './view/alarm';
 import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
-import { element, setText } from './view/canvas';
+import { element, setText, showMessage } from './view/canvas';
 import { RobotChoice } from './view/choice';
 import { downloadRobot } from './view/download';
 import { Drive, formatDisplacement } from './view/drive';
@@ -30,7 +30,7 @@ import { Health } from './view/health';
 import { RecordView } from './view/keep';
 import { Lengths } from './view/lengths';
 import { Log } from './view/log';
-import { MapsView } from './view/maps';
+import { MapView } from './view/maps';
 import { MarginsView } from './view/margins';
 import type { MeasureView } from './view/measure';
 import { Pace } from './view/pace';
@@ -70,7 +70,7 @@ async function start(): Promise<void> {
     onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
       recordView.addFrame(frame, widths, seconds);
-      if (frame.scene) maps.addPosition(frame.scene);
+      if (frame.scene) for (const map of maps) map.addPosition(frame.scene);
       if (widths) scope.setWidths(widths);
     },
     onPulse: (pin, rise, width) => {
@@ -106,7 +106,7 @@ async function start(): Promise<void> {
   const predictor = new Predictor(session);
   const scope = new ScopeView(session);
   const margins = new MarginsView(session);
-  const maps = new MapsView(session);
+  const maps = [new MapView(session, 0), new MapView(session, 1)];
   const log = new Log((line) => void session.ask(line));
   const floor = new Floor(() => {
     session.returnToStart();
@@ -213,9 +213,7 @@ async function start(): Promise<void> {
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !isLagging;
     setText(element('lag'), measured ? `${measured.lag.toFixed(1)}°` : '–');
     setText(element('share'), prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
-    const refusal = last?.fault ?? last?.scene?.refusal ?? null;
-    element('refusal').hidden = refusal === null;
-    setText(element('refusal'), refusal ?? '');
+    showMessage(element('refusal'), last?.fault ?? last?.scene?.refusal ?? '');
   }
 
   const loadChosenFile = async () => {
@@ -312,7 +310,7 @@ async function start(): Promise<void> {
       if (pictureCount % PICTURES_PER_DRAWING === 0) {
         scope.draw(latestCycle);
         margins.draw(session.last?.scene ?? null);
-        maps.draw();
+        for (const map of maps) map.draw();
       }
       if (msSinceNumbers >= 1000 / NUMBER_UPDATES_PER_SECOND) {
         msSinceNumbers = 0;

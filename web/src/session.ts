@@ -8,7 +8,7 @@ import { type SavedChanges, browserStorage } from './kept';
 import { BootLine } from './link/boot-line';
 import { Deadman } from './link/deadman';
 import { type Answer, Dialogue, DroppedQuestion, BANNER_PREFIX } from './link/dialogue';
-import { GONE_MESSAGE, type Link, type SimulatedLink } from './link/link';
+import { GONE_MESSAGE, type Link } from './link/link';
 import { UnoLink } from './link/uno-link';
 import { isRefused, parseBanner, parsePoseReport, parseStatus } from './robot';
 import type { Banner, Description, Floor, Four, Frame, Predictions, Refused, Robot, Status } from './robot';
@@ -198,11 +198,6 @@ export class Session {
     if (file !== '') browserStorage.putChanges({ file, original, toml, floor, servos, volts });
   }
 
-  /** Restores the unchanged robot of the file. */
-  async restore(): Promise<void> {
-    await this.change(this.original);
-  }
-
   private loadToml(toml: string, floorSetting = this.state.floor.value, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
     const answer = this.robot.read(toml);
     if (isRefused(answer)) return answer;
@@ -221,7 +216,7 @@ export class Session {
 
   /** Restarts a simulated board with the page's robot; a real board keeps its own robot. */
   private async restartBoard(keepsEeprom: boolean): Promise<void> {
-    if (!this.isReal) await this.simulate(keepsEeprom && this.link instanceof UnoLink ? this.link.board.eeprom : undefined);
+    if (!this.isReal) await this.simulate(keepsEeprom ? this.simulated?.board.eeprom : undefined);
   }
 
   /** Firmware and robot as one image of flash. */
@@ -266,12 +261,8 @@ export class Session {
     const pins = this.description.servos.map(({ pin }) => pin);
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
     for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
-    const events = {
-      onFrame: (widths: Four<number>) => this.handleWidths(widths),
-      onPulse: (pin: number, rise: number, width: number) => this.listener.onPulse(pin, rise, width),
-    };
-    await this.attach(new UnoLink(board, pins, events));
-    this.simulated?.setSupply(this.volts);
+    await this.attach(new UnoLink(board, pins, { onFrame: (widths) => this.handleWidths(widths), onPulse: (...pulse) => this.listener.onPulse(...pulse) }));
+    this.simulated?.board.setSupply(this.volts);
   }
 
   /**
@@ -290,7 +281,7 @@ export class Session {
     const isRadio = link.kind === 'radio';
     const hasSentBanner = !isRadio && (await this.waitForBanner());
     for (let n = 0; !hasSentBanner && this.banner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
-      if (this.link === link && (await this.checkAnswer())) this.setBoardBanner('unknown');
+      if (this.link === link && (await this.checkAnswer())) this.state.banner.value = 'unknown';
     }
     if (this.link !== link) return false;
     if (this.banner) await this.watch();
@@ -300,7 +291,7 @@ export class Session {
   }
 
   private reportSilentModule(link: Link): void {
-    this.setBoardBanner(null);
+    this.state.banner.value = null;
     this.listener.onTrouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
   }
 
@@ -317,7 +308,7 @@ export class Session {
     if (!isInReach) return;
     for (let n = 0; n < MAX_ATTEMPTS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
-      if (!this.banner) this.setBoardBanner('unknown');
+      if (!this.banner) this.state.banner.value = 'unknown';
       this.listener.onTrouble('board', null);
       return this.watch();
     }
@@ -347,7 +338,7 @@ export class Session {
       message = `The board does not speak as this firmware does: ${messageOf(error)}.`;
     }
     if (this.link !== link) return;
-    this.setBoardBanner(null);
+    this.state.banner.value = null;
     this.listener.onTrouble('board', message);
   }
 
@@ -466,7 +457,7 @@ export class Session {
     this.isWatching = false;
     this.deadman.forget();
     this.listener.onTrouble('board', null);
-    this.setBoardBanner(parseBanner(line) ?? 'unknown');
+    this.state.banner.value = parseBanner(line) ?? 'unknown';
     this.resolveBanner();
     // A byte would cancel `boot`.
     this.mayAsk = false;
@@ -476,10 +467,6 @@ export class Session {
       this.mayAsk = true;
       if (this.isReal && !this.isWatching) void this.watch();
     });
-  }
-
-  private setBoardBanner(banner: BoardBanner): void {
-    this.state.banner.value = banner;
   }
 
   private setPace(percent: number): void {
@@ -606,7 +593,7 @@ export class Session {
     const hasSentBanner = await this.waitForBanner();
     if (this.link !== link) return null;
     if (!hasSentBanner) {
-      this.setBoardBanner(null);
+      this.state.banner.value = null;
       this.listener.onTrouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
       return 'it sends no banner of this firmware';
     }
@@ -614,8 +601,9 @@ export class Session {
     return hash !== null && boardHash !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
-  private get simulated(): SimulatedLink | null {
-    return this.link && 'advance' in this.link ? (this.link as SimulatedLink) : null;
+  /** The link, if it leads to a simulated board. */
+  private get simulated(): UnoLink | null {
+    return this.link instanceof UnoLink ? this.link : null;
   }
 
   /** Runs the simulation. */
@@ -696,12 +684,12 @@ export class Session {
     if (isClosed) this.closedInputs.add(name);
     else this.closedInputs.delete(name);
     const input = this.description.inputs.find(([inputName]) => inputName === name);
-    if (input) this.simulated?.setContact(input[1], isClosed);
+    if (input) this.simulated?.board.setContact(input[1], isClosed);
   }
 
   setSupply(volts: number): void {
     this.volts = volts;
-    this.simulated?.setSupply(volts);
+    this.simulated?.board.setSupply(volts);
     this.storeChanges();
   }
 }

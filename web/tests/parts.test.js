@@ -136,7 +136,7 @@ test('while a length is dragged, the two parts that meet are red in 3D, and thei
   const message = page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ });
   await message.waitFor();
   const [, pair, overlapMm] = /printed: (.*) would overlap by ([\d.]+) mm/.exec(await message.innerText());
-  await page.locator('#parts-said', { hasText: `${pair}: ${overlapMm} mm too much.` }).waitFor();
+  await page.locator('#parts-said', { hasText: `${pair} overlap by ${overlapMm} mm.` }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), previousToml, 'the slider is not released yet');
   // The stop button is red, too. The picture follows the slider after a moment.
   const waitForRed = async (isRed) => {
@@ -175,7 +175,7 @@ test('the files that a changed length affects are listed, and can be downloaded 
   assert.deepEqual(Object.keys(archive).sort(), changedNames.sort());
   assert.ok(changedNames.length > 5 && changedNames.length < paths.length - 20, `${changedNames.length} of ${paths.length}`);
   assert.deepEqual((await page.locator('#files-list li').allInnerTexts()).sort(), changedNames.sort());
-  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files are not those of robot\\.toml:`));
+  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files differ from those of robot\\.toml:`));
 });
 
 test('opening the page loads no parts, and less than 500 KB compressed', async () => {
@@ -254,7 +254,7 @@ test('making the files can be stopped, and then nothing is saved', async () => {
 test('a clicked part shows its name and its file', async () => {
   const page = await openParts();
   await lookFromAbove(page);
-  assert.match(await clickAt(page, 0.5, 0.5), /^board: board, bought; put on in step 3\.$/);
+  assert.match(await clickAt(page, 0.5, 0.5), /^board: board, bought; mounted in step 3\.$/);
   assert.equal(await page.locator('#part option:checked').innerText(), 'board');
   assert.match(await clickAt(page, 0.02, 0.98), /^Click a part/);
   // The list, for the keyboard, has all parts.
@@ -324,7 +324,7 @@ test('the page says why a robot cannot be built', async () => {
   const page = await openParts();
   const lowPartsToml = '\n[parts]\nheight = 10.0\n';
   assert.equal(await page.evaluate((lowPartsToml) => window.lizard.change(window.lizard.toml + lowPartsToml), lowPartsToml), null);
-  await page.getByText('There are no parts of this robot: parts.height is 10 mm').waitFor();
+  await page.getByText('The parts of this robot cannot be made: parts.height is 10 mm').waitFor();
 });
 
 test('3D pictures take less than a core on a machine without a graphics chip', async (t) => {

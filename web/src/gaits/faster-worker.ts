@@ -6,15 +6,15 @@ import { isRefused, type OnFloor } from '../robot';
 
 let robot: Robot;
 
-/** A gait that the search found, with its trial on the page's floor and servos. */
+/** A gait that the search found, with its trial on the page's floor with the page's servos. */
 export interface BestGait extends Found {
   trial: Trial;
 }
 
 const functions = {
   /**
-   * Prepares a search. Returns the number of gaits to try, the largest speed of the servos, deg/s, and the trial of the
-   * gait to beat. Throws the refusal.
+   * Prepares a search. Returns the number of gaits to try, the speed that no servo may exceed, deg/s, and the trial of
+   * the gait to beat. Throws an `Error` whose message is the refusal.
    */
   begin(module: WebAssembly.Module, { toml, floor, servos, task }: OnFloor & { task: SearchTask }) {
     initSync({ module });
@@ -31,8 +31,8 @@ const functions = {
   tryNext: () => robot.fasterStep(),
 
   /**
-   * Returns the best gait so far, compared with the gait to beat on a number of random robots; null while no gait has
-   * kept the limits.
+   * Returns the best gait so far, compared with the gait to beat on a number of random robots; null until a gait
+   * stays within the limits.
    */
   bestSoFar(robotCount: number): BestGait | null {
     const bestGait = robot.fasterFound(robotCount);

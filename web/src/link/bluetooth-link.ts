@@ -36,6 +36,7 @@ export function bluetoothProblem(): string | null {
 
 export class BluetoothLink implements Link {
   readonly kind = 'radio';
+  readonly wait = sleep;
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   onReach: (isInReach: boolean) => void = () => {};
@@ -123,10 +124,6 @@ export class BluetoothLink implements Link {
 
   /** Does nothing: a Bluetooth module cannot reset a board. */
   async reset(): Promise<void> {}
-
-  wait(ms: number): Promise<void> {
-    return sleep(ms);
-  }
 
   async close(): Promise<void> {
     this.isClosing = true;

@@ -20,7 +20,7 @@ export interface Link {
   /** Called with the bytes that are received. */
   onBytes: (bytes: Uint8Array) => void;
   /** Called when the board is gone. */
-  onGone: (why: string) => void;
+  onGone?: (why: string) => void;
   /** Called when a radio loses contact with its board, and when contact is restored. */
   onReach?: (isInReach: boolean) => void;
   /** Sends bytes. */
@@ -31,16 +31,6 @@ export interface Link {
   wait(ms: number): Promise<void>;
   /** Closes the link; nothing is received afterwards. */
   close(): Promise<void>;
-}
-
-/** A link to a simulated board, which runs only in `advance`. */
-export interface SimulatedLink extends Link {
-  /** Runs the board for a simulated time. */
-  advance(ms: number): void;
-  /** Sets the voltage of the board's supply. */
-  setSupply(volts: number): void;
-  /** Opens or closes a contact between a pin, by its Arduino number, and ground. */
-  setContact(pin: number, isClosed: boolean): void;
 }
 
 /** Timers in simulated time. */

@@ -16,6 +16,7 @@ const RESET_PULSE_MS = 50;
 export const hasSerial = () => Boolean(navigator.serial);
 
 export class PortLink implements Link {
+  readonly wait = sleep;
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (why: string) => void = () => {};
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
@@ -88,10 +89,6 @@ export class PortLink implements Link {
       await this.port.setSignals({ dataTerminalReady: isLow, requestToSend: isLow }).catch(() => Promise.reject(new Error(GONE_MESSAGE)));
       await sleep(RESET_PULSE_MS);
     }
-  }
-
-  wait(ms: number): Promise<void> {
-    return sleep(ms);
   }
 
   async close(): Promise<void> {

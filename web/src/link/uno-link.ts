@@ -1,8 +1,8 @@
-// The link to a simulated UNO, which runs the image cycle by cycle.
+// The link to a simulated UNO, which runs the image cycle by cycle, and only in `advance`.
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY_HZ } from '../uno/board';
 import { FrameCollector } from '../uno/frames';
-import { type SimulatedLink, Timers } from './link';
+import { type Link, Timers } from './link';
 
 const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
 /** Simulated time that the chip runs between two reads of its output, ms. */
@@ -16,11 +16,10 @@ export interface UnoEvents {
   onPulse(pin: number, rise: number, width: number): void;
 }
 
-export class UnoLink implements SimulatedLink {
+export class UnoLink implements Link {
   readonly kind = 'simulated';
   readonly name = 'simulated UNO';
   onBytes: (bytes: Uint8Array) => void = () => {};
-  onGone: (why: string) => void = () => {};
   private readonly timers = new Timers();
   private readonly frameCollector: FrameCollector;
   /** The bytes that the board has sent in the current slice. */
@@ -70,16 +69,6 @@ export class UnoLink implements SimulatedLink {
   /** Resets the board by its reset pin. */
   async reset(): Promise<void> {
     this.board.reset('external');
-  }
-
-  /** Sets the voltage of the board's supply. */
-  setSupply(volts: number): void {
-    this.board.setSupply(volts);
-  }
-
-  /** Opens or closes a contact between a pin, by its Arduino number, and ground. */
-  setContact(pin: number, isClosed: boolean): void {
-    this.board.setContact(pin, isClosed);
   }
 
   /** Waits in simulated time. */

@@ -8,7 +8,7 @@ import { initSync, Parts } from '../../generated/parts';
 export interface Progress {
   stage: 'prove' | 'make';
   done: number;
-  all: number;
+  total: number;
 }
 
 /** The parts whose solids are shown; null until they are made. */
@@ -18,9 +18,9 @@ let shownParts: Parts | null = null;
 function filesOf(parts: Parts, progress: (progress: Progress) => void): Record<string, Uint8Array> {
   const filesByPath: Record<string, Uint8Array> = {};
   const fileCount = parts.entry().files;
-  for (let number = 0; number < fileCount; number++) {
-    progress({ stage: 'make', done: number, all: fileCount });
-    for (const { path, bytes } of parts.files(number)) filesByPath[path] = bytes;
+  for (let index = 0; index < fileCount; index++) {
+    progress({ stage: 'make', done: index, total: fileCount });
+    for (const { path, bytes } of parts.files(index)) filesByPath[path] = bytes;
   }
   return filesByPath;
 }
@@ -53,7 +53,7 @@ const functions = {
    */
   make(toml: string, previousToml: string | null, progress: (progress: Progress) => void) {
     const parts = new Parts(toml);
-    const leastMm = parts.prove((done, all) => progress({ stage: 'prove', done, all })) ?? null;
+    const leastMm = parts.prove((done, total) => progress({ stage: 'prove', done, total })) ?? null;
     const files = filesOf(parts, progress);
     const count = Object.keys(files).length;
     if (previousToml !== null) {

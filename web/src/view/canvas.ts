@@ -28,6 +28,12 @@ export function surface(canvas: HTMLCanvasElement, isOpaque = false): Surface | 
   return { pen, width, height };
 }
 
+/** Adds straight lines through points to the path. */
+export function polyline(pen: CanvasRenderingContext2D, ...[[x, y], ...others]: [[number, number], ...[number, number][]]): void {
+  pen.moveTo(x, y);
+  for (const point of others) pen.lineTo(...point);
+}
+
 /**
  * Adds a circle to the path, as two half circles: with the y axis upward, the context that writes SVG reverses the
  * direction of an arc, and a half circle looks the same in both directions.

@@ -155,9 +155,7 @@ export class FasterView {
     await this.editor.compare(reference, best.bars, element('faster-ways'));
   }
 
-  private say(text: string): void {
-    setText(this.message, text);
-  }
+  private readonly say = (text: string): void => setText(this.message, text);
 }
 
 const percent = ({ gain }: BestGait) => `${(100 * gain).toFixed(0)} %`;

@@ -1,6 +1,6 @@
 // The floor that the lizard walks on, with pan and zoom by pointer, wheel, fingers or keys.
 import type { Frame, Place, Plate } from '../robot';
-import { circle, element, surface } from './canvas';
+import { circle, element, polyline, surface } from './canvas';
 import { drawLizard } from './lizard';
 import { onPaletteChange, palette } from './palette';
 
@@ -200,12 +200,10 @@ export class Floor {
     pen.lineWidth = 1 / this.zoom;
     pen.beginPath();
     for (let lineX = Math.ceil((x - halfWidth) / spacing) * spacing; lineX <= x + halfWidth; lineX += spacing) {
-      pen.moveTo(lineX, y - halfHeight);
-      pen.lineTo(lineX, y + halfHeight);
+      polyline(pen, [lineX, y - halfHeight], [lineX, y + halfHeight]);
     }
     for (let lineY = Math.ceil((y - halfHeight) / spacing) * spacing; lineY <= y + halfHeight; lineY += spacing) {
-      pen.moveTo(x - halfWidth, lineY);
-      pen.lineTo(x + halfWidth, lineY);
+      polyline(pen, [x - halfWidth, lineY], [x + halfWidth, lineY]);
     }
     pen.stroke();
   }
@@ -220,10 +218,8 @@ export class Floor {
     // Marks the start.
     pen.beginPath();
     circle(pen, 0, 0, 4);
-    pen.moveTo(-9, 0);
-    pen.lineTo(9, 0);
-    pen.moveTo(0, -9);
-    pen.lineTo(0, 9);
+    polyline(pen, [-9, 0], [9, 0]);
+    polyline(pen, [0, -9], [0, 9]);
     pen.stroke();
   }
 
@@ -234,10 +230,8 @@ export class Floor {
     pen.strokeStyle = palette().ink;
     pen.lineWidth = 1.5;
     pen.beginPath();
-    pen.moveTo(x, y - 4);
-    pen.lineTo(x, y);
-    pen.lineTo(x + length * this.zoom, y);
-    pen.lineTo(x + length * this.zoom, y - 4);
+    const endX = x + length * this.zoom;
+    polyline(pen, [x, y - 4], [x, y], [endX, y], [endX, y - 4]);
     pen.stroke();
     return { text: `${length} mm`, x: x + 4, y: y - 5 };
   }

@@ -6,7 +6,7 @@ import { element } from './canvas';
 import { type GaitEditor, FasterView } from './faster';
 import { make, setAttributes, shape, tableRow } from './make';
 import { setUpNumberInput, putNumber, type Range } from './number';
-import { isShown } from './rooms';
+import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -38,7 +38,6 @@ const roundTo = (value: number, step: number) => Number((Math.round(value / step
 const wrapPhase = (phase: number) => ((phase % 1) + 1) % 1;
 
 export class GaitsView {
-  private readonly panel = element<HTMLDetailsElement>('gait-editor');
   private readonly templateList = element<HTMLSelectElement>('gait-from');
   private readonly nameInput = element<HTMLInputElement>('gait-name');
   private readonly kindList = element<HTMLSelectElement>('gait-kind');
@@ -51,8 +50,6 @@ export class GaitsView {
   private readonly faster: FasterView;
   /** The edited gait; null if none was edited yet. */
   private gait: Bars | null = browserStorage.getGait();
-  /** The robot.toml whose gaits are listed; empty before the first one. */
-  private shownToml = '';
 
   constructor(
     private readonly session: Session,
@@ -61,8 +58,8 @@ export class GaitsView {
   ) {
     this.trial = new TrialView(session, writer, { prefix: 'gait', editedGait: () => this.gait, change: (key, value) => this.changeGait({ [key]: value }) });
     this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.changeGait(gait), compare });
-    this.panel.addEventListener('toggle', () => this.showRobot());
-    session.followRobot(() => this.showRobot());
+    session.followRobot(() => this.faster.endIfRobotChanged());
+    followShownRobot(element<HTMLDetailsElement>('gait-editor'), session, (description) => this.showRobot(description));
     this.templateList.addEventListener('change', () => this.editTemplate());
     this.nameInput.addEventListener('input', () => this.changeGait({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
     this.kindList.addEventListener('change', () => this.changeGait({ held: this.kindList.value === 'held' }));
@@ -74,13 +71,8 @@ export class GaitsView {
     element('gait-turn-round').addEventListener('click', () => this.gait && this.changeGait(Robot.reversed(this.gait)));
   }
 
-  /** Shows the session's robot if the panel is open; an edited gait stays. */
-  private showRobot(): void {
-    this.faster.endIfRobotChanged();
-    if (!isShown(this.panel)) return;
-    const { description, toml } = this.session;
-    if (toml === this.shownToml) return;
-    this.shownToml = toml;
+  /** Shows another robot; an edited gait stays. */
+  private showRobot(description: Description): void {
     this.fillTemplateList(description);
     if (!this.gait || this.templateList.value === '') return this.editTemplate();
     this.showGait();

@@ -8,10 +8,21 @@ import type { Writer } from './writer';
 
 const REQUEST_PERIOD_MS = 500;
 
+/** The text of each value of the panel. */
+const VALUE_TEXTS: Record<string, (status: Status) => string> = {
+  fault: ({ fault }) => fault ?? 'none',
+  guard: ({ isHeld }) => (isHeld ? 'held' : 'clear'),
+  margin: ({ margin }) => margin?.toFixed(3) ?? '–',
+  vcc: ({ vcc }) => (vcc === null ? '–' : `${vcc.toFixed(2)} V`),
+  'late edges': ({ lateEdges }) => String(lateEdges),
+  'bytes lost': ({ lostBytes }) => String(lostBytes),
+  'last reset': ({ resetCause }) => resetCause,
+  restarts: ({ resetCount }) => String(resetCount),
+};
+
 export class Health {
   private readonly panel = element<HTMLDetailsElement>('power');
-  private readonly list = element('health');
-  private readonly values = new Map<string, HTMLElement>();
+  private readonly values = Object.entries(VALUE_TEXTS).map(([name, textOf]) => ({ name, textOf, box: make('dd', {}, '–') }));
   /** True from a request until its answer. */
   private isAsking = false;
 
@@ -19,11 +30,7 @@ export class Health {
     private readonly session: Session,
     private readonly writer: Writer,
   ) {
-    for (const name of ['fault', 'guard', 'margin', 'vcc', 'late edges', 'bytes lost', 'last reset', 'restarts']) {
-      const value = make('dd', {}, '–');
-      this.list.append(make('div', {}, make('dt', {}, name), value));
-      this.values.set(name, value);
-    }
+    element('health').append(...this.values.map(({ name, box }) => make('div', {}, make('dt', {}, name), box)));
     setInterval(() => void this.requestStatus(), REQUEST_PERIOD_MS);
   }
 
@@ -32,24 +39,6 @@ export class Health {
     this.isAsking = true;
     const status = await this.session.status();
     this.isAsking = false;
-    if (status) this.show(status);
-  }
-
-  private show(status: Status): void {
-    if (!isShown(this.panel)) return;
-    const texts: Record<string, string> = {
-      fault: status.fault ?? 'none',
-      guard: status.isHeld ? 'held' : 'clear',
-      margin: status.margin === null ? '–' : status.margin.toFixed(3),
-      vcc: status.vcc === null ? '–' : `${status.vcc.toFixed(2)} V`,
-      'late edges': String(status.lateEdges),
-      'bytes lost': String(status.lostBytes),
-      'last reset': status.resetCause,
-      restarts: String(status.resetCount),
-    };
-    for (const [name, text] of Object.entries(texts)) {
-      const value = this.values.get(name);
-      if (value) setText(value, text);
-    }
+    if (status && isShown(this.panel)) for (const { box, textOf } of this.values) setText(box, textOf(status));
   }
 }

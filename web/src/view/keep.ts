@@ -308,7 +308,5 @@ export class RecordView {
     element<HTMLButtonElement>('alone').disabled = this.companion === null;
   }
 
-  private say(text: string, box = element('keep-said')): void {
-    setText(box, text);
-  }
+  private readonly say = (text: string, box = element('keep-said')): void => setText(box, text);
 }

@@ -1,7 +1,7 @@
 // The robot's lengths as number inputs: each change makes a new robot or is refused.
 import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
-import { element } from './canvas';
+import { element, showMessage } from './canvas';
 import { downloadRobot } from './download';
 import { make } from './make';
 import { describeRefusal, showOffers, editsWithTwin } from './tried-lengths';
@@ -17,7 +17,7 @@ export class Lengths {
     private readonly session: Session,
     private readonly offerValidLengths: (edits: Edits) => void,
   ) {
-    element('lengths-reset').addEventListener('click', () => void this.session.restore());
+    element('lengths-reset').addEventListener('click', () => void session.change(session.original));
     element('lengths-save').addEventListener('click', () => this.download());
     session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
@@ -32,7 +32,7 @@ export class Lengths {
         input.removeAttribute('aria-invalid');
       }
     }
-    this.say(null);
+    this.say('');
   }
 
   private buildInputs(lengths: Length[]): void {
@@ -73,9 +73,8 @@ export class Lengths {
     if (refusal) this.say(`This robot.toml lacks the settings of Legs, feet and floor: ${refusal.refused}`);
   }
 
-  private say(message: string | null): void {
-    this.refusalText.hidden = message === null;
-    this.refusalText.textContent = message ?? '';
+  private say(message: string): void {
+    showMessage(this.refusalText, message);
     showOffers(null, this.session);
   }
 }

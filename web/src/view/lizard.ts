@@ -1,6 +1,6 @@
 // Draws the robot from above, in mm of the chassis frame: x to the right, y forward.
 import type { Plate, Scene, Point } from '../robot';
-import { circle } from './canvas';
+import { circle, polyline } from './canvas';
 import { palette, servoColour } from './palette';
 
 const FOOT_RADIUS_MM = 6;
@@ -11,13 +11,12 @@ const SLIP_LIMIT_MM = 0.3;
 
 type Pen = CanvasRenderingContext2D;
 
-function drawBar(pen: Pen, [x1, y1]: Point, [x2, y2]: Point, colour: string, widthMm: number): void {
+function drawBar(pen: Pen, from: Point, to: Point, colour: string, widthMm: number): void {
   pen.strokeStyle = colour;
   pen.lineWidth = widthMm;
   pen.lineCap = 'round';
   pen.beginPath();
-  pen.moveTo(x1, y1);
-  pen.lineTo(x2, y2);
+  polyline(pen, from, to);
   pen.stroke();
 }
 
@@ -50,11 +49,8 @@ function drawSpring(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
   pen.lineWidth = 0.9;
   pen.lineJoin = 'round';
   pen.beginPath();
-  pen.moveTo(x1, y1);
-  pen.lineTo(...pointAt(0.12, 0));
-  for (let n = 0; n < 2 * SPRING_TURNS; n++) pen.lineTo(...pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH_MM : -SPRING_HALF_WIDTH_MM));
-  pen.lineTo(...pointAt(0.88, 0));
-  pen.lineTo(x2, y2);
+  const windings = Array.from({ length: 2 * SPRING_TURNS }, (_, n) => pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH_MM : -SPRING_HALF_WIDTH_MM));
+  polyline(pen, [x1, y1], pointAt(0.12, 0), ...windings, pointAt(0.88, 0), [x2, y2]);
   pen.stroke();
 }
 

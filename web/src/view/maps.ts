@@ -1,6 +1,6 @@
-// The maps of the singularities of the head's and the tail's five-bar over the angles of their left and right servo,
-// with the robot's current position.
-import type { Robot, Scene, SingularityMap } from '../robot';
+// The map of the singularities of the head's or the tail's five-bar over the angles of its left and right servo, with
+// the robot's current position.
+import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
 import { element, surface } from './canvas';
 import { onPaletteChange, palette } from './palette';
@@ -9,7 +9,7 @@ import { onPaletteChange, palette } from './palette';
 const TRAIL_LENGTH = 100;
 
 /** The map of one end, head or tail. */
-class MapView {
+export class MapView {
   private readonly canvas: HTMLCanvasElement;
   private map: SingularityMap | null = null;
   private trail: [number, number][] = [];
@@ -17,16 +17,17 @@ class MapView {
   private background: HTMLCanvasElement | null = null;
 
   /** `endIndex` is 0 for the head and 1 for the tail. */
-  constructor(private readonly endIndex: number) {
+  constructor(
+    session: Session,
+    private readonly endIndex: number,
+  ) {
     this.canvas = element<HTMLCanvasElement>(`map-${endIndex}`);
     onPaletteChange(() => (this.background = null));
-  }
-
-  /** Shows the map of another robot. */
-  setRobot(robot: Robot): void {
-    this.map = robot.map(this.endIndex);
-    this.background = null;
-    this.trail = [];
+    session.followRobot(() => {
+      this.map = session.robot.map(endIndex);
+      this.background = null;
+      this.trail = [];
+    });
   }
 
   /** Adds the current position to the trail. */
@@ -94,23 +95,5 @@ class MapView {
       }
     }
     return backgroundCanvas;
-  }
-}
-
-export class MapsView {
-  private readonly maps = [new MapView(0), new MapView(1)];
-
-  constructor(session: Session) {
-    session.followRobot(() => {
-      for (const map of this.maps) map.setRobot(session.robot);
-    });
-  }
-
-  addPosition(scene: Scene): void {
-    for (const map of this.maps) map.addPosition(scene);
-  }
-
-  draw(): void {
-    for (const map of this.maps) map.draw();
   }
 }

@@ -1,11 +1,11 @@
 // The robot in 3D on the stage, and its panel: the parts, the steps of the building guide, and all files for printing
 // and cutting. The code for 3D is loaded only when 3D is shown or the panel is opened.
-import type { RobotView } from '../parts/space';
+import type { RobotView } from '../parts/robot-view';
 import type { PartsArchive, Meeting, Model, Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
-import { element } from './canvas';
+import { element, showMessage } from './canvas';
 import { saveFile } from './download';
 import { make } from './make';
 import { onPaletteChange } from './palette';
@@ -14,7 +14,7 @@ import { isShown } from './rooms';
 const ORIGIN: Place = { x: 0, y: 0, heading: 0 };
 
 /** Converts the guide's Markdown, which uses only bold and code, to plain text. */
-const plainText = (words: string) => words.replaceAll('**', '').replaceAll('`', '');
+const plainText = (markdown: string) => markdown.replaceAll('**', '').replaceAll('`', '');
 
 export class PartsView {
   private readonly panel = element<HTMLDetailsElement>('parts');
@@ -23,7 +23,7 @@ export class PartsView {
   private readonly canvas = element<HTMLCanvasElement>('space');
   private readonly explosionSlider = element<HTMLInputElement>('apart');
   private readonly partList = element<HTMLSelectElement>('part');
-  /** The buttons that make files: all files, or only files that changed lengths change. */
+  /** The buttons that make files: `all` makes every file, `changed` only those that differ after the lengths were edited. */
   private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
   private robotView: RobotView | null = null;
   private solids: Solids | null = null;
@@ -36,11 +36,11 @@ export class PartsView {
   private step: number | null = null;
   /** The index of the picked part; null without one. */
   private pickedBody: number | null = null;
-  /** The two parts that come too close to each other, which are shown in red; null if all fit. */
+  /** The two parts that overlap or come too close to each other, which are shown in red; null if all fit. */
   private meeting: Meeting | null = null;
   /** Angles and lags of the pose that was requested last, as text; empty if the pose must be requested again. */
   private requestedPose = '';
-  /** Stops the making of files; null while none are made. */
+  /** Cancels the making of files; null while none are being made. */
   private stopMaking: (() => void) | null = null;
 
   constructor(private readonly session: Session) {
@@ -92,9 +92,9 @@ export class PartsView {
   }
 
   private async load(toml: string): Promise<void> {
-    this.say('parts-said', 'Making the solids…');
+    this.say('parts-said', 'Building the 3D model…');
     try {
-      const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/workshop'), import('../parts/space')]);
+      const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/workshop'), import('../parts/robot-view')]);
       const { solids, model, meshes } = await Solids.make(toml);
       if (toml !== this.shownToml) return solids.end();
       // The previous robot was shown until now.
@@ -111,7 +111,7 @@ export class PartsView {
       if (toml !== this.shownToml) return;
       // A failed download is tried again when 3D is shown again.
       this.shownToml = '';
-      this.say('parts-said', `There are no parts of this robot: ${messageOf(error)}${this.model ? ' The one before is shown.' : ''}`);
+      this.say('parts-said', `The parts of this robot cannot be made: ${messageOf(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
     }
   }
 
@@ -121,15 +121,15 @@ export class PartsView {
       return new robotViewClass(this.canvas, (body) => this.pickBody(body));
     } catch {
       this.canvas.hidden = true;
-      this.say('space-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in space. The files can be made all the same.');
+      this.say('space-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in 3D. You can still make the files.');
       return null;
     }
   }
 
   private fillPartList(model: Model): void {
-    const bodies = model.bodies.map(({ name }, number) => ({ name, number }));
+    const bodies = model.bodies.map(({ name }, index) => ({ name, index }));
     bodies.sort((a, b) => a.name.localeCompare(b.name));
-    this.partList.replaceChildren(new Option('none', ''), ...bodies.map(({ name, number }) => new Option(name, String(number))));
+    this.partList.replaceChildren(new Option('none', ''), ...bodies.map(({ name, index }) => new Option(name, String(index))));
   }
 
   private stepBy(change: number): void {
@@ -163,12 +163,12 @@ export class PartsView {
     const { meeting } = this;
     if (meeting) {
       const { first, second, mm } = meeting;
-      this.say('parts-said', `${first} and ${second}: ${mm < 0 ? `${(-mm).toFixed(2)} mm too much` : `only ${mm.toFixed(2)} mm apart`}.`);
+      this.say('parts-said', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
     } else if (!body) this.say('parts-said', this.robotView ? 'Click a part for its name and its file.' : '');
-    else if (!part) this.say('parts-said', `${body.name}: ${body.kind}, bought; put on in step ${body.step}.`);
+    else if (!part) this.say('parts-said', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
     else {
       const countText = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
-      this.say('parts-said', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; put on in step ${body.step}.`);
+      this.say('parts-said', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; mounted in step ${body.step}.`);
     }
     this.updateRobotView();
   }
@@ -185,8 +185,8 @@ export class PartsView {
     element('apart-out').textContent = `${this.explosionSlider.value} %`;
     const { step, pickedBody, meeting, model } = this;
     const names = meeting ? [meeting.first, meeting.second] : [];
-    const clash = names.map((name) => model?.bodies.findIndex((body) => body.name === name) ?? -1);
-    this.robotView?.show({ explosion: Number(this.explosionSlider.value) / 100, guideStep: step, selectedBody: pickedBody, clashingBodies: clash });
+    const clashingBodies = names.map((name) => model?.bodies.findIndex((body) => body.name === name) ?? -1);
+    this.robotView?.applySettings({ explosion: Number(this.explosionSlider.value) / 100, guideStep: step, selectedBody: pickedBody, clashingBodies });
   }
 
   /** Draws the robot; called in every frame of the page. */
@@ -211,7 +211,7 @@ export class PartsView {
   }
 
   private async makeFiles(selection: 'all' | 'changed'): Promise<void> {
-    // While files are made, the button stops that.
+    // While files are being made, the button stops the job.
     if (this.stopMaking) return this.stopMaking();
     const { toml, original, file } = this.session;
     const bar = element<HTMLProgressElement>('parts-progress');
@@ -228,12 +228,12 @@ export class PartsView {
     let isOver = false;
     try {
       const workshop = await import('../parts/workshop');
-      const { answer, stop } = workshop.makeArchive(toml, selection === 'all' ? null : original, ({ stage: doing, done, all }: Progress) => {
+      const { answer, stop } = workshop.makeArchive(toml, selection === 'all' ? null : original, ({ stage, done, total }: Progress) => {
         // Reports have a channel of their own: some arrive after the answer, or after the worker was terminated.
         if (isOver) return;
-        bar.max = all;
+        bar.max = total;
         bar.value = done;
-        this.say('files-said', `${activityTexts[doing]}: ${done} of ${all}.`);
+        this.say('files-said', `${activityTexts[stage]}: ${done} of ${total}.`);
       });
       const stopPromise = new Promise<null>((resolve) => {
         this.stopMaking = () => {
@@ -248,7 +248,7 @@ export class PartsView {
       this.say('files-said', this.savedText(files, selection));
       if (selection === 'changed') this.listFiles(files.paths);
     } catch (error) {
-      this.say('files-said', `No files are made: ${messageOf(error)}`);
+      this.say('files-said', `The files cannot be made: ${messageOf(error)}`);
     } finally {
       this.stopMaking = null;
       bar.hidden = true;
@@ -260,7 +260,7 @@ export class PartsView {
   private savedText({ paths, count, least: leastMm }: PartsArchive, selection: 'all' | 'changed'): string {
     const distanceText = leastMm === null ? '' : ` No two parts come nearer than ${leastMm.toFixed(2)} mm at any pose that the guard accepts.`;
     if (selection === 'all') return `${count} files.${distanceText}`;
-    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files are not those of ${this.session.file}.toml:`;
+    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files differ from those of ${this.session.file}.toml:`;
   }
 
   private listFiles(paths: string[]): void {
@@ -270,8 +270,6 @@ export class PartsView {
   }
 
   private say(id: string, text: string): void {
-    const box = element(id);
-    box.textContent = text;
-    box.hidden = text === '';
+    showMessage(element(id), text);
   }
 }

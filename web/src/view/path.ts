@@ -4,7 +4,7 @@ import type { Session } from '../session';
 import { element } from './canvas';
 import { setAttributes, shape } from './make';
 import { setUpNumberInput, putNumber, type Range } from './number';
-import { isShown } from './rooms';
+import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
@@ -23,7 +23,7 @@ type Point = [number, number];
  * Predefined lines: each returns the point, relative to the neutral point, at an angle of 0 to 2π along the line. The
  * unit is a tenth of the distance from the base to the neutral point.
  */
-const SHAPES: Record<string, (angle: number) => Point> = {
+const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
   circle: (angle) => [Math.sin(angle), Math.cos(angle) - 1],
   eight: (angle) => [1.4 * Math.sin(angle), 0.6 * Math.sin(2 * angle)],
   side: (angle) => [1.4 * Math.sin(angle), 0],
@@ -40,7 +40,6 @@ const NUMBER_RANGES: Record<GestureNumber, Range> = {
 };
 
 export class PathView {
-  private readonly panel = element<HTMLDetailsElement>('path-editor');
   private readonly plane = element<HTMLElement>('path-plane') as unknown as SVGSVGElement;
   private readonly endList = element<HTMLSelectElement>('path-end');
   private readonly shapeList = element<HTMLSelectElement>('path-shape');
@@ -55,8 +54,6 @@ export class PathView {
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
   /** The area that the end point can reach; null until the panel is opened, or if there is none. */
   private reachArea: ReachArea | null = null;
-  /** The robot.toml whose plane is shown; empty before the first one. */
-  private shownToml = '';
 
   constructor(
     private readonly session: Session,
@@ -64,7 +61,6 @@ export class PathView {
   ) {
     const gaitToTry = () => (this.gesture.points.length === 0 ? null : this.gesture);
     this.trial = new TrialView(session, writer, { prefix: 'path', editedGait: gaitToTry, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
-    this.panel.addEventListener('toggle', () => this.showRobot());
     this.endList.addEventListener('change', () => {
       this.gesture = { ...this.gesture, end: this.endList.value as End };
       this.showPlane();
@@ -78,16 +74,8 @@ export class PathView {
       });
     }
     this.recordLines();
-    session.followRobot(() => this.showRobot());
-  }
-
-  /** Shows the plane of the session's robot, if the panel is open; a drawn line stays. */
-  private showRobot(): void {
-    if (!isShown(this.panel)) return;
-    const { toml } = this.session;
-    if (toml === this.shownToml) return;
-    this.shownToml = toml;
-    this.showPlane(this.gesture.points.length > 0);
+    // A drawn line stays when the robot changes.
+    followShownRobot(element<HTMLDetailsElement>('path-editor'), session, () => this.showPlane(this.gesture.points.length > 0));
   }
 
   /** Shows the plane of the chosen end, head or tail, with the drawn line if `isKept`, else with the chosen shape. */
@@ -95,17 +83,13 @@ export class PathView {
     this.reachArea = this.session.robot.reachArea(this.gesture.end === 'head' ? 0 : 1);
     if (!this.reachArea) return;
     this.drawBackground(this.reachArea);
-    const shape = SHAPES[this.shapeList.value];
-    if (!isKept && shape) {
-      const [x, y] = this.reachArea.neutral;
-      const tenth = Math.hypot(x, y) / 10;
-      const points = Array.from({ length: SHAPE_POINT_COUNT }, (_, n): Point => {
-        const [right, outward] = shape((2 * Math.PI * n) / SHAPE_POINT_COUNT);
-        return [x + tenth * right, y + tenth * outward];
-      });
-      this.changeGesture({ points, size: 1 });
-    } else if (!isKept) this.changeGesture({ points: [], size: 1 });
-    else this.changeGesture({});
+    if (isKept) return this.changeGesture({});
+    const pointAt = SHAPES[this.shapeList.value];
+    const [x, y] = this.reachArea.neutral;
+    const tenth = Math.hypot(x, y) / 10;
+    const angles = Array.from({ length: SHAPE_POINT_COUNT }, (_, n) => (2 * Math.PI * n) / SHAPE_POINT_COUNT);
+    const points = pointAt ? angles.map(pointAt).map(([right, outward]): Point => [x + tenth * right, y + tenth * outward]) : [];
+    this.changeGesture({ points, size: 1 });
   }
 
   private changeGesture(changes: Partial<DrawnGait>): void {

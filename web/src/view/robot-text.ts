@@ -4,7 +4,7 @@ import { linkTo, unpack } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
-import { element } from './canvas';
+import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';
 import type { Writer } from './writer';
 
@@ -162,9 +162,9 @@ export class RobotText {
   private async copyLink(): Promise<void> {
     try {
       await navigator.clipboard.writeText(await linkTo(this.session.toml));
-      this.showMessage('The link is copied: it opens this robot, without the comments of its text.');
+      this.say('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
-      this.showMessage(`The link could not be copied: ${messageOf(error)}`);
+      this.say(`The link could not be copied: ${messageOf(error)}`);
     }
   }
 
@@ -174,20 +174,18 @@ export class RobotText {
     const isShown = codeBox.childElementCount === 0;
     element('robot-code').setAttribute('aria-pressed', String(isShown));
     codeBox.replaceChildren();
-    if (!isShown) return this.showMessage('');
+    if (!isShown) return this.say('');
     try {
       const { qrCode } = await import('./qr-code');
       codeBox.replaceChildren(qrCode(await linkTo(this.session.toml)));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
-      this.showMessage(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
+      this.say(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
     } catch (error) {
-      this.showMessage(`No code can be drawn: ${messageOf(error)}`);
+      this.say(`No code can be drawn: ${messageOf(error)}`);
     }
   }
 
-  private showMessage(text: string): void {
-    element('robot-said').textContent = text;
-  }
+  private readonly say = (text: string): void => setText(element('robot-said'), text);
 
   private goToMistake(): void {
     const line = this.refusal?.line;
@@ -201,12 +199,11 @@ export class RobotText {
 
   private showRefusal(refusal: Refused | null): void {
     this.refusal = refusal;
-    element('robot-refusal').hidden = refusal === null;
-    element('robot-refusal').textContent = refusal?.refused ?? '';
+    showMessage(element('robot-refusal'), refusal?.refused ?? '');
     const button = element('robot-line');
     button.hidden = refusal?.line == null;
     button.textContent = `Go to line ${refusal?.line}`;
-    this.showMessage('');
+    this.say('');
     // The code that was shown belongs to another robot.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');

@@ -1,6 +1,8 @@
 // The rooms beside the stage, of which one is open. The part `room` of the page's address names it, so that links and
 // the browser's Back button open a room.
 import { addressParts } from '../address';
+import type { Description } from '../robot';
+import type { Session } from '../session';
 
 /** The event that the document receives after another room was opened. */
 export const ROOM_OPENED = 'room';
@@ -32,6 +34,19 @@ export function openRoom(hash: string): void {
 
 /** True if a panel is unfolded and its room is open; a panel that is not shown draws nothing. */
 export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closest<HTMLElement>('.room')?.hidden === false;
+
+/** Calls `show` once for each robot.toml, as soon as a panel is shown. */
+export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
+  let shownToml = '';
+  const update = () => {
+    const { toml, description } = session;
+    if (!isShown(panel) || toml === shownToml) return;
+    shownToml = toml;
+    show(description);
+  };
+  panel.addEventListener('toggle', update);
+  session.followRobot(update);
+}
 
 /** Opens the room of an element, and its panel. */
 export function reveal(target: HTMLElement): void {

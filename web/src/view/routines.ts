@@ -4,7 +4,7 @@ import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Rou
 import { robotQuestion } from '../robot-helper';
 import { Recorder } from '../routines/recorder';
 import type { Session } from '../session';
-import { element } from './canvas';
+import { element, setText, showMessage } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
 import type { RobotText } from './robot-text';
@@ -90,9 +90,7 @@ export class RoutinesView {
     this.pathQuestion.ask({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
 
-  private say(text: string): void {
-    element('routine-said').textContent = text;
-  }
+  private readonly say = (text: string): void => setText(element('routine-said'), text);
 
   /** The chosen routine, with its steps in the order to which the user is dragging them; null without a routine. */
   private get chosenRoutine(): Routine | null {
@@ -190,8 +188,7 @@ export class RoutinesView {
       if (mistakenIndex === index) input.setAttribute('aria-describedby', this.refusalBox.id);
       else input.removeAttribute('aria-describedby');
     });
-    this.refusalBox.hidden = refusal === null;
-    this.refusalBox.textContent = refusal?.refused ?? '';
+    showMessage(this.refusalBox, refusal?.refused ?? '');
     if (mistakenIndex !== null) stepList.children[mistakenIndex]?.append(this.refusalBox);
     else stepList.after(this.refusalBox);
     element<HTMLButtonElement>('routine-undo').disabled = !canUndo;

@@ -4,7 +4,7 @@ import { effect } from '@preact/signals-core';
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
 import { FREQUENCY_HZ } from '../uno/board';
-import { element, setText, surface } from './canvas';
+import { element, polyline, setText, surface } from './canvas';
 import { make } from './make';
 import { palette, servoColour } from './palette';
 import { isShown } from './rooms';
@@ -107,16 +107,11 @@ export class ScopeView {
       pen.strokeStyle = servoColour(servo);
       pen.lineWidth = 2;
       pen.beginPath();
-      pen.moveTo(0, lowY);
-      for (const pulse of this.pulses) {
-        if (pulse.servo !== servo || xOf(pulse.riseCycle + pulse.widthCycles) < 0) continue;
-        const [from, to] = [xOf(pulse.riseCycle), xOf(pulse.riseCycle + pulse.widthCycles)];
-        pen.lineTo(from, lowY);
-        pen.lineTo(from, highY);
-        pen.lineTo(to, highY);
-        pen.lineTo(to, lowY);
-      }
-      pen.lineTo(width, lowY);
+      const edges = this.pulses
+        .filter((pulse) => pulse.servo === servo)
+        .map(({ riseCycle, widthCycles }) => [xOf(riseCycle), xOf(riseCycle + widthCycles)])
+        .filter(([, to]) => to >= 0);
+      polyline(pen, [0, lowY], ...edges.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
       pen.stroke();
     }
   }

@@ -8,7 +8,7 @@ import type { Session } from '../session';
 import { BoardGuide } from '../setup/guide';
 import { messageOf } from '../trouble';
 import { GAITS, NOTHING_SAVED_LINE } from '../words';
-import { element } from './canvas';
+import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';
 import { boardStep } from './setup/board';
 import { makeDrawing, SERVO_PLACES } from './setup/drawing';
@@ -67,7 +67,7 @@ export class Setup implements StepTools {
     readonly writer: Writer,
     private readonly connectBoard: () => Promise<void>,
   ) {
-    element('setup-open').addEventListener('click', () => this.open());
+    element('setup-open').addEventListener('click', () => this.open(this.step));
     element('setup-leave').addEventListener('click', () => void this.leave());
     element('setup-back').addEventListener('click', () => this.moveBy(-1));
     element('setup-next').addEventListener('click', () => this.moveBy(1));
@@ -87,23 +87,19 @@ export class Setup implements StepTools {
     follow([link, banner, bannerCount, description, writer.isBusy], () => link.value && this.followLink());
   }
 
-  /** Opens the dialog at the step at which it was left, or at the first step. */
-  private open(): void {
-    this.showDialog();
-    this.enterStep(this.step);
-  }
-
   /** True while the dialog is open, so that hands may be in the robot. */
   get isOpen(): boolean {
     return !this.dialog.hidden;
   }
 
-  private showDialog(): void {
+  /** Opens the dialog at a step. */
+  private open(step: Step): void {
     this.session.letGo();
     this.dialog.hidden = false;
     reveal(this.dialog);
     element('setup-open').setAttribute('aria-expanded', 'true');
     element('setup-left').hidden = true;
+    this.enterStep(step);
   }
 
   /** Opens the first step that a newly connected board needs, if it needs one. */
@@ -113,12 +109,8 @@ export class Setup implements StepTools {
     if (link.kind === 'radio' && this.dialog.hidden) return;
     const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmwareStep : this.isUncalibrated ? hornsStep : null;
     if (this.dialog.hidden) {
-      if (!step) return;
-      this.step = step;
-      this.showDialog();
-      this.enterStep(step);
-    } else if (this.step === boardStep && step) this.goTo(step.name);
-    else this.enterStep(this.step);
+      if (step) this.open(step);
+    } else this.enterStep(this.step === boardStep && step ? step : this.step);
   }
 
   /** Takes a line that the robot has sent. */
@@ -181,22 +173,14 @@ export class Setup implements StepTools {
     opener.setAttribute('aria-expanded', 'false');
     opener.focus();
     this.dropAction(message !== '');
-    const leaveMessage = element('setup-left');
-    leaveMessage.textContent = message;
-    leaveMessage.hidden = message === '';
+    showMessage(element('setup-left'), message);
   }
 
-  readonly markDone = (step: string): void => {
-    this.doneSteps.add(step);
-  };
+  readonly markDone = (step: string): void => void this.doneSteps.add(step);
 
-  readonly isDone = (step: string): boolean => {
-    return this.doneSteps.has(step);
-  };
+  readonly isDone = (step: string): boolean => this.doneSteps.has(step);
 
-  readonly connect = (): void => {
-    void this.connectBoard();
-  };
+  readonly connect = (): void => void this.connectBoard();
 
   readonly write = (content: WriteContent): void => {
     this.guide = null;
@@ -216,9 +200,13 @@ export class Setup implements StepTools {
     });
   };
 
-  readonly run = (work: (guide: Guide) => Promise<string>): void => {
-    this.runAction(async () => (await this.requireGuide()).run(work));
-  };
+  readonly run = (work: (guide: Guide) => Promise<string>): void => this.runAction(async () => (await this.requireGuide()).run(work));
+
+  readonly stand = (): void =>
+    this.run(async (guide) => {
+      await guide.stand();
+      return 'The robot stands.';
+    });
 
   /** Returns the guide of the connected robot; reads the robot's calibration first if needed. */
   private async requireGuide(): Promise<BoardGuide> {
@@ -256,9 +244,7 @@ export class Setup implements StepTools {
     this.dialog.setAttribute('aria-busy', String(isBusy));
   }
 
-  private say(text: string): void {
-    this.message.textContent = text;
-  }
+  private readonly say = (text: string): void => setText(this.message, text);
 
   readonly goTo = (name: string): void => {
     const step = STEPS.find((candidate) => candidate.name === name);
@@ -266,8 +252,7 @@ export class Setup implements StepTools {
   };
 
   private moveBy(stepCount: number): void {
-    const step = STEPS[STEPS.indexOf(this.step) + stepCount];
-    if (step) this.enterStep(step);
+    this.enterStep(STEPS[STEPS.indexOf(this.step) + stepCount] ?? this.step);
   }
 
   private enterStep(step: Step): void {

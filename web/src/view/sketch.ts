@@ -9,7 +9,7 @@ import { element } from './canvas';
 import type { FitView } from './fit';
 import { LengthSlider } from './length-slider';
 import { setAttributes, shape } from './make';
-import { isShown } from './rooms';
+import { followShownRobot } from './rooms';
 import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 
 type Question = Parameters<RobotFunctions['lengths']>[0];
@@ -21,7 +21,6 @@ const DRAG_THRESHOLD_PX = 3;
 const MARGIN_MM = 14;
 
 export class Sketch {
-  private readonly panel = element<HTMLDetailsElement>('lengths-panel');
   private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
   private readonly message = element('sketch-said');
   private readonly symmetryBox = element<HTMLInputElement>('alike');
@@ -30,8 +29,6 @@ export class Sketch {
   /** Asks for a drawing of the robot with other lengths. */
   private readonly robotQuestion = robotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
   private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.askRobot());
-  /** The robot.toml that is drawn; empty before the first one. */
-  private shownToml = '';
   /** The dragged joint, as it was at the start of the drag; null without a drag. */
   private draggedJoint: Joint | null = null;
   /** True from the end of a drag until its last position is answered. */
@@ -41,39 +38,30 @@ export class Sketch {
     private readonly session: Session,
     private readonly fit: FitView,
   ) {
-    this.panel.addEventListener('toggle', () => this.showRobot());
-    session.followRobot(() => this.showRobot());
+    followShownRobot(element<HTMLDetailsElement>('lengths-panel'), session, ({ lengths }) => this.showRobot(lengths));
   }
 
-  /** Draws the session's robot in its neutral pose, if the panel is open. */
-  private showRobot(): void {
-    if (!isShown(this.panel)) return;
-    const { toml, description } = this.session;
-    if (toml === this.shownToml) return;
-    this.shownToml = toml;
+  /** Draws the session's robot in its neutral pose. */
+  private showRobot(lengths: Length[]): void {
     this.draggedJoint = null;
-    this.slider.showRobot(description.lengths);
+    this.slider.showRobot(lengths);
     this.askRobot();
   }
 
   /** Requests a drawing of the session's robot, and the range of the slider's length. */
   private askRobot(): void {
-    this.robotQuestion.ask({ toml: this.shownToml, edits: [], isLast: false, keys: this.slider.keys });
+    this.robotQuestion.ask({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
   /** Tries the lengths of a drag; `isLast` is true at the drag's end. */
   private tryOut(edits: Edits, isLast: boolean): void {
     this.isDragEnding ||= isLast;
-    this.robotQuestion.ask({ toml: this.shownToml, edits, isLast, keys: [] });
+    this.robotQuestion.ask({ toml: this.session.toml, edits, isLast, keys: [] });
   }
 
   /** Searches for valid lengths in place of refused ones, and offers them. */
   offerValidLengths(edits: Edits): void {
-    this.robotQuestion.ask({ toml: this.shownToml, edits, isLast: true, keys: [] });
-  }
-
-  private lengthsByKey(): Map<string, Length> {
-    return new Map(this.session.description.lengths.map((length) => [length.key, length]));
+    this.robotQuestion.ask({ toml: this.session.toml, edits, isLast: true, keys: [] });
   }
 
   private handleAnswer({ edits, text, refusal, scene, nearest, without, isLast, range }: Answer): void {
@@ -102,9 +90,8 @@ export class Sketch {
   /** Shows the session's unchanged robot again. */
   private showUnchanged(): void {
     const { lengths } = this.session.description;
-    this.slider.showRobot(lengths);
+    this.showRobot(lengths);
     this.fit.showRobot(lengths);
-    this.askRobot();
   }
 
   private applyRange(range: [number, number]): void {
@@ -117,7 +104,7 @@ export class Sketch {
    */
   private draw(scene: Scene, isViewFitted: boolean): void {
     const toPicture = ([x, y]: Point): Point => [x, -y];
-    const lengths = this.lengthsByKey();
+    const lengths = new Map(this.session.description.lengths.map((length) => [length.key, length]));
     this.barGroup.replaceChildren(
       ...bars(scene).map(({ key, from, to }) => {
         const [[x1, y1], [x2, y2]] = [toPicture(from), toPicture(to)];
@@ -162,11 +149,7 @@ export class Sketch {
       if (!isDragged(event)) return void (this.draggedJoint = null);
       this.dragJoint(joint, event, true);
     });
-    mark.addEventListener('pointercancel', () => {
-      if (this.draggedJoint !== joint) return;
-      this.draggedJoint = null;
-      this.showUnchanged();
-    });
+    mark.addEventListener('pointercancel', () => this.draggedJoint === joint && this.showUnchanged());
     return mark;
   }
 

@@ -4,7 +4,7 @@ import { takeGait, tryGait } from '../gaits/try';
 import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
 import { robotQuestion } from '../robot-helper';
 import type { Session } from '../session';
-import { element } from './canvas';
+import { element, setText } from './canvas';
 import { button } from './make';
 import type { Writer } from './writer';
 
@@ -65,9 +65,7 @@ export class TrialView {
   }
 
   /** Shows a message beside the editor's buttons. */
-  say(text: string): void {
-    this.element('said').textContent = text;
-  }
+  readonly say = (text: string): void => setText(this.element('said'), text);
 
   private element<E extends HTMLElement = HTMLElement>(name: string): E {
     return element<E>(`${this.editor.prefix}-${name}`);
@@ -78,12 +76,12 @@ export class TrialView {
     const validTrial = trial && !isRefused(trial) ? trial : null;
     this.trial = validTrial;
     for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !validTrial;
-    const setText = (name: string, text: string) => (this.element(name).textContent = text);
+    const show = (name: string, text: string) => setText(this.element(name), text);
     const shownFigures = validTrial && formatFigures(validTrial);
-    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) setText(name, shownFigures?.[name] ?? '–');
-    setText('table', validTrial?.table ?? '');
+    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) show(name, shownFigures?.[name] ?? '–');
+    show('table', validTrial?.table ?? '');
     this.element('no').hidden = refusal === null;
-    setText('refusal', refusal?.refused ?? '');
+    show('refusal', refusal?.refused ?? '');
     this.element('instead').replaceChildren(
       ...(refusal?.instead ?? []).map(({ what, value }) => button(OFFER_LABELS[what](value), () => this.editor.change(what, value))),
     );

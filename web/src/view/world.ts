@@ -5,21 +5,10 @@ import type { Session } from '../session';
 import { element } from './canvas';
 import { make } from './make';
 
-/** Formats a number with at most `digits` decimals. */
-const formatRounded = (value: number, digits: number) => Number(value.toFixed(digits)).toString();
-
-/** The number format of each slider; the unit is in the slider's label. */
-const SLIDER_FORMATS = {
-  force: (value: number) => value.toFixed(1),
-  play: (value: number) => value.toFixed(1),
-  leaf: (value: number) => value.toFixed(1),
-  twist: (value: number) => value.toFixed(1),
-  friction: (value: number) => value.toFixed(2),
-  ratio: (value: number) => value.toFixed(2),
-  mass: (value: number) => formatRounded(value, 0),
-};
-type SliderName = keyof typeof SLIDER_FORMATS;
-const SLIDER_NAMES = Object.keys(SLIDER_FORMATS) as SliderName[];
+/** Number of decimals of each slider's value; its unit is in the slider's label. */
+const DECIMALS = { force: 1, play: 1, leaf: 1, twist: 1, friction: 2, ratio: 2, mass: 0 };
+type SliderName = keyof typeof DECIMALS;
+const SLIDER_NAMES = Object.keys(DECIMALS) as SliderName[];
 
 /** The label of each of the robot's inputs: the event that closes its contact. */
 const CONTACT_LABELS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
@@ -34,19 +23,17 @@ export class World {
     this.driveList.addEventListener('change', () => this.applyFloor());
     for (const name of SLIDER_NAMES) {
       const input = this.sliderOf(name);
-      input.addEventListener('input', () => this.showText(input, SLIDER_FORMATS[name](input.valueAsNumber)));
+      input.addEventListener('input', () => this.showText(input, input.valueAsNumber.toFixed(DECIMALS[name])));
       input.addEventListener('change', () => this.applyFloor());
     }
     element('floor-reset').addEventListener('click', () => {
       this.session.setFloor(null);
       this.showRobot();
     });
-    const { supplyInput } = this;
-    supplyInput.addEventListener('input', () => this.showText(supplyInput, supplyInput.valueAsNumber.toFixed(2)));
+    const { supplyInput, voltsInput } = this;
+    for (const input of [supplyInput, voltsInput]) input.addEventListener('input', () => this.showVolts(input));
     supplyInput.addEventListener('change', () => this.session.setSupply(supplyInput.valueAsNumber));
     this.servoList.addEventListener('change', () => this.chooseServos(this.servoList.value));
-    const { voltsInput } = this;
-    voltsInput.addEventListener('input', () => this.showText(voltsInput, voltsInput.valueAsNumber.toFixed(2)));
     voltsInput.addEventListener('change', () => this.chooseServos(`${this.servoList.value} at ${voltsInput.value}`));
     session.followRobot(() => this.showRobot());
   }
@@ -61,13 +48,13 @@ export class World {
       if (floor[name] > Number(input.max)) input.max = String(floor[name]);
       if (floor[name] < Number(input.min)) input.min = String(floor[name]);
       input.value = String(floor[name]);
-      this.showText(input, SLIDER_FORMATS[name](floor[name]));
+      this.showText(input, floor[name].toFixed(DECIMALS[name]));
     }
     this.enableSliders(floor);
     this.servoList.replaceChildren(...description.models.map((model) => new Option(describeServo(model), model.name)));
     this.showServos();
     this.supplyInput.value = String(this.session.volts);
-    this.showText(this.supplyInput, this.supplyInput.valueAsNumber.toFixed(2));
+    this.showVolts(this.supplyInput);
     const [slowVolts, stopVolts, restVolts] = description.supply;
     this.showInputs();
     element('supply-note').textContent =
@@ -90,7 +77,7 @@ export class World {
     if (!figures) return;
     this.voltsInput.max = String(Math.max(6, figures[3]));
     this.voltsInput.value = supply ?? String(figures[3]);
-    this.showText(this.voltsInput, this.voltsInput.valueAsNumber.toFixed(2));
+    this.showVolts(this.voltsInput);
   }
 
   /** Shows a checkbox for each input of the robot: its simulated contact is closed while the box is ticked. */
@@ -121,6 +108,8 @@ export class World {
     element('rigid-note').hidden = isElastic || lags(floor) || floor.twist !== 0;
   }
 
+  private readonly showVolts = (input: HTMLInputElement): void => this.showText(input, input.valueAsNumber.toFixed(2));
+
   private showText(input: HTMLInputElement, text: string): void {
     element(`${input.id}-out`).textContent = text;
     input.setAttribute('aria-valuetext', text);
@@ -129,22 +118,11 @@ export class World {
   /** Sets the sliders' values in the session. */
   private applyFloor(): void {
     // A slider that was not moved keeps its exact value.
-    const currentFloor = this.session.floor;
-    const sliderValue = (name: SliderName) => {
-      const input = this.sliderOf(name);
-      return SLIDER_FORMATS[name](currentFloor[name]) === SLIDER_FORMATS[name](input.valueAsNumber) ? currentFloor[name] : input.valueAsNumber;
-    };
-    const floor: Floor = {
-      friction: sliderValue('friction'),
-      ratio: sliderValue('ratio'),
-      mass: sliderValue('mass'),
-      kind: this.driveList.value as Kind,
-      force: sliderValue('force'),
-      rate: currentFloor.rate,
-      play: sliderValue('play'),
-      leaf: sliderValue('leaf'),
-      twist: sliderValue('twist'),
-    };
+    const floor: Floor = { ...this.session.floor, kind: this.driveList.value as Kind };
+    for (const name of SLIDER_NAMES) {
+      const value = this.sliderOf(name).valueAsNumber;
+      if (floor[name].toFixed(DECIMALS[name]) !== value.toFixed(DECIMALS[name])) floor[name] = value;
+    }
     this.enableSliders(floor);
     this.session.setFloor(floor);
   }

@@ -33,7 +33,10 @@ export class LimitsStep implements Step {
       row(
         button(`↺ ${TURN_DEG}°`, () => this.turnServo(tools, currentAngle + TURN_DEG)),
         button(`↻ ${TURN_DEG}°`, () => this.turnServo(tools, currentAngle - TURN_DEG)),
-        button('Stand', () => this.stand(tools)),
+        button('Stand', () => {
+          this.reset();
+          tools.stand();
+        }),
       ),
       ...(limit
         ? [
@@ -56,14 +59,6 @@ export class LimitsStep implements Step {
       const angle = await guide.point(servo, degrees);
       this.lastTurned = { servo, degrees };
       return `A${servo + 1} points to ${angle.toFixed(2)}°.`;
-    });
-  }
-
-  private stand({ run }: StepTools): void {
-    run(async (guide) => {
-      await guide.stand();
-      this.reset();
-      return 'The robot stands.';
     });
   }
 

@@ -12,7 +12,7 @@ export const trimsStep: Step = {
   needsRobot: true,
   isPerServo: true,
   selectedServo: ({ servo }) => ({ servo, turnDeg: null }),
-  makeElements({ guide, servo, run, markDone, session }) {
+  makeElements({ guide, servo, run, stand, markDone, session }) {
     const trim = guide?.calibration.servos[servo].trim;
     const neutral = session.description.servos[servo].neutral.toFixed(1);
     const changeTrim = (change: number) => () =>
@@ -20,11 +20,6 @@ export const trimsStep: Step = {
         await guide.trim(servo, change);
         markDone('Trims');
         return `The trim of A${servo + 1} is ${guide.calibration.servos[servo].trim.toFixed(2)}°.`;
-      });
-    const stand = () =>
-      run(async (guide) => {
-        await guide.stand();
-        return 'The robot stands.';
       });
     return [
       paragraph(`Let the robot stand, and turn the crank of ${servoName(servo)} until it points to ${neutral}°, or mirrors the one on the other side.`),

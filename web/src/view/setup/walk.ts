@@ -8,7 +8,7 @@ export const walkStep: Step = {
   title: 'The first walk',
   needsRobot: true,
   makeElements(tools) {
-    const { run, markDone, session } = tools;
+    const { run, stand, markDone, session } = tools;
     const unprovenServos = findUnprovenServos(tools);
     const isWalking = session.description.gaits.some(({ command, moves }) => moves && command === session.gait);
     const startWalk = () =>
@@ -17,11 +17,6 @@ export const walkStep: Step = {
         if (gait === undefined) return 'This robot has no gait.';
         markDone('First walk');
         return `The robot does "${gait}".`;
-      });
-    const endWalk = () =>
-      run(async (guide) => {
-        await guide.stand();
-        return 'The robot stands.';
       });
     const saveCalibration = () =>
       run(async (guide) => {
@@ -33,7 +28,7 @@ export const walkStep: Step = {
       paragraph('Put the robot together now (quickstart, step 7). Let it walk first on a box, its feet in the air, then on the floor with room in front of it.'),
       ...(isUnsaved ? [paragraph('Will it be without power for that? What was set is lost then, unless it is saved.'), row(button('Save it before', saveCalibration))] : []),
       ...(unprovenServos.length > 0 ? [warning(`Not proven yet: the sign of ${unprovenServos.map((servo) => `A${servo + 1}`).join(', ')}. Go back to Signs first.`)] : []),
-      row(isWalking ? button('Let it stand', endWalk, true) : button('Let it walk', startWalk, true)),
+      row(isWalking ? button('Let it stand', stand, true) : button('Let it walk', startWalk, true)),
       note('Esc and the red stop button end it at any moment.'),
     ];
   },

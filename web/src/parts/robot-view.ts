@@ -1,22 +1,5 @@
 // The robot in three dimensions, drawn by three.js. This file is a separate chunk, loaded on demand.
-import {
-  AmbientLight,
-  BufferAttribute,
-  BufferGeometry,
-  Color,
-  DirectionalLight,
-  GridHelper,
-  Group,
-  Matrix4,
-  Mesh,
-  MeshLambertMaterial,
-  PerspectiveCamera,
-  Raycaster,
-  Scene,
-  Vector2,
-  Vector3,
-  WebGLRenderer,
-} from 'three';
+import * as three from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 import type { Place } from '../robot';
@@ -39,7 +22,7 @@ const STILL_MS = 400;
 /** Share of the floor's colour in pale bodies: bodies of earlier steps, or all except the selected ones. */
 const PALE_SHARE = 0.65;
 
-/** The view's settings. */
+/** The settings of the 3D view: the spread of the exploded view, the guide's step and the highlighted bodies. */
 export interface ViewSettings {
   /** Spread of the exploded view, 0 to 1. */
   explosion: number;
@@ -51,17 +34,18 @@ export interface ViewSettings {
   clashingBodies: number[];
 }
 
+/** A 3D view of the robot that the user can rotate, zoom and click. */
 export class RobotView {
-  private readonly renderer: WebGLRenderer;
-  private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(35, 1, 10, 4000);
+  private readonly renderer: three.WebGLRenderer;
+  private readonly scene = new three.Scene();
+  private readonly camera = new three.PerspectiveCamera(35, 1, 10, 4000);
   private readonly controls: OrbitControls;
-  private readonly sun = new DirectionalLight(0xffffff, 2.2);
+  private readonly sun = new three.DirectionalLight(0xffffff, 2.2);
   private readonly paintBudget: PaintBudget;
-  private grid: GridHelper | null = null;
+  private grid: three.GridHelper | null = null;
   private model: Model | null = null;
-  private mounts: Group[] = [];
-  private meshes: Mesh<BufferGeometry, MeshLambertMaterial>[] = [];
+  private mounts: three.Group[] = [];
+  private meshes: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>[] = [];
   private settings: ViewSettings = { explosion: 0, guideStep: null, selectedBody: null, clashingBodies: [] };
   private needsDrawing = true;
   /** Time of the last change, ms. */
@@ -72,13 +56,13 @@ export class RobotView {
     private readonly canvas: HTMLCanvasElement,
     onPick: (body: number | null) => void,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
+    this.renderer = new three.WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
     this.paintBudget = new PaintBudget(this.renderer.getContext() as WebGL2RenderingContext);
     this.camera.up.set(0, 0, 1);
     // The sun is behind the viewer, a little to the side.
     this.sun.position.set(-0.6, 0.9, 1.2);
     this.camera.add(this.sun);
-    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.1));
+    this.scene.add(this.camera, new three.AmbientLight(0xffffff, 1.1));
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => (this.needsDrawing = true));
     this.controls.maxDistance = 1500;
@@ -107,8 +91,9 @@ export class RobotView {
     });
   }
 
-  /** Turns, zooms or resets the view as the key asks; returns false if the key has no effect. */
+  /** Rotates, zooms or resets the view, depending on the key; returns false if the key has no effect. */
   handleKey(key: string): boolean {
+    // Changes of azimuth and elevation, rad, and the factor by which the camera's distance changes; 0 resets the view.
     const movesByKey: Record<string, [number, number, number]> = {
       ArrowLeft: [-TURN_RAD, 0, 1],
       ArrowRight: [TURN_RAD, 0, 1],
@@ -120,17 +105,17 @@ export class RobotView {
     };
     const move = movesByKey[key];
     if (!move) return false;
-    const [azimuthChange, elevationChange, zoom] = move;
-    if (zoom === 0) this.resetView();
+    const [azimuthChange, elevationChange, distanceFactor] = move;
+    if (distanceFactor === 0) this.resetView();
     else {
       const { target } = this.controls;
       const offset = this.camera.position.clone().sub(target);
       const elevation = Math.asin(Math.max(-1, Math.min(1, offset.z / offset.length())));
       const maxElevation = Math.PI / 2 - 0.05;
       const newElevation = Math.max(-maxElevation, Math.min(maxElevation, elevation + elevationChange));
-      const newDirection = Math.atan2(offset.y, offset.x) + azimuthChange;
-      const distance = Math.max(this.controls.minDistance, Math.min(this.controls.maxDistance, offset.length() * zoom));
-      this.camera.position.set(Math.cos(newDirection) * Math.cos(newElevation), Math.sin(newDirection) * Math.cos(newElevation), Math.sin(newElevation));
+      const newAzimuth = Math.atan2(offset.y, offset.x) + azimuthChange;
+      const distance = Math.max(this.controls.minDistance, Math.min(this.controls.maxDistance, offset.length() * distanceFactor));
+      this.camera.position.set(Math.cos(newAzimuth) * Math.cos(newElevation), Math.sin(newAzimuth) * Math.cos(newElevation), Math.sin(newElevation));
       this.camera.position.multiplyScalar(distance).add(target);
       this.controls.update();
     }
@@ -144,7 +129,7 @@ export class RobotView {
     // The camera is farther away for a narrow canvas, to show the whole robot.
     const { clientWidth, clientHeight } = this.canvas;
     const distance = 500 * Math.max(1, (1.3 * clientHeight) / Math.max(1, clientWidth));
-    this.camera.position.copy(new Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(distance)).add(this.controls.target);
+    this.camera.position.copy(new three.Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(distance)).add(this.controls.target);
     this.controls.update();
     this.needsDrawing = true;
   }
@@ -156,50 +141,50 @@ export class RobotView {
     for (const geometry of new Set(this.meshes.map((mesh) => mesh.geometry))) geometry.dispose();
     this.model = model;
     const geometries = solids.map(({ corners, triangles }) => {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute('position', new BufferAttribute(corners, 3));
-      geometry.setIndex(new BufferAttribute(triangles, 1));
+      const geometry = new three.BufferGeometry();
+      geometry.setAttribute('position', new three.BufferAttribute(corners, 3));
+      geometry.setIndex(new three.BufferAttribute(triangles, 1));
       geometry.computeBoundingSphere();
       return geometry;
     });
     this.mounts = Array.from({ length: model.mounts }, () => {
-      const mount = new Group();
+      const mount = new three.Group();
       mount.matrixAutoUpdate = false;
       this.scene.add(mount);
       return mount;
     });
     this.meshes = model.bodies.map((body) => {
-      const mesh = new Mesh(geometries[body.solid], new MeshLambertMaterial({ flatShading: true }));
+      const mesh = new three.Mesh(geometries[body.solid], new three.MeshLambertMaterial({ flatShading: true }));
       mesh.matrixAutoUpdate = false;
       this.mounts[body.mount]?.add(mesh);
       return mesh;
     });
-    this.show(this.settings);
+    this.applySettings(this.settings);
   }
 
   /** Applies the view's settings, and the colours of light or dark mode. */
-  show(settings: ViewSettings): void {
+  applySettings(settings: ViewSettings): void {
     this.settings = settings;
     const { guideStep, explosion, selectedBody, clashingBodies } = settings;
     const colours = palette();
-    const floor = new Color(colours.floor);
+    const floor = new three.Color(colours.floor);
     this.scene.background = floor;
     if (this.grid) this.scene.remove(this.grid);
     this.grid?.dispose();
-    this.grid = new GridHelper(CELL_MM * CELLS_PER_SIDE, CELLS_PER_SIDE, colours.grid, colours.grid);
+    this.grid = new three.GridHelper(CELL_MM * CELLS_PER_SIDE, CELLS_PER_SIDE, colours.grid, colours.grid);
     this.grid.geometry.rotateX(Math.PI / 2);
     this.grid.matrixAutoUpdate = false;
     this.scene.add(this.grid);
     this.model?.bodies.forEach((body, index) => {
       const mesh = this.meshes[index];
       if (!mesh) return;
-      const isNew = guideStep === null || body.step === guideStep;
+      const isInCurrentStep = guideStep === null || body.step === guideStep;
       mesh.visible = guideStep === null || body.step <= guideStep;
-      const chosenBodies = clashingBodies.length > 0 ? clashingBodies : selectedBody === null ? null : [selectedBody];
-      const isPale = chosenBodies ? !chosenBodies.includes(index) : !isNew;
+      const highlightedBodies = clashingBodies.length > 0 ? clashingBodies : selectedBody === null ? null : [selectedBody];
+      const isPale = highlightedBodies ? !highlightedBodies.includes(index) : !isInCurrentStep;
       mesh.material.color.set(clashingBodies.includes(index) ? colours.alarm : colourOf(body)).lerp(floor, isPale ? PALE_SHARE : 0);
-      const lift = new Matrix4().makeTranslation(0, 0, isNew ? explosion * LIFT_MM * body.lift : 0);
-      mesh.matrix.copy(lift.multiply(new Matrix4().fromArray(body.place)));
+      const lift = new three.Matrix4().makeTranslation(0, 0, isInCurrentStep ? explosion * LIFT_MM * body.lift : 0);
+      mesh.matrix.copy(lift.multiply(new three.Matrix4().fromArray(body.place)));
       mesh.matrixWorldNeedsUpdate = true;
     });
     this.needsDrawing = true;
@@ -215,12 +200,12 @@ export class RobotView {
     this.needsDrawing = true;
   }
 
-  /** Returns true if a picture may be painted now; must be called in every frame of the page. */
+  /** Returns true if a frame may be rendered now; to be called once per animation frame. */
   mayDraw(): boolean {
     return this.paintBudget.mayPaint();
   }
 
-  /** Draws a picture if something has changed and `mayDraw()` is true. `place` is the robot's place on the floor. */
+  /** Renders a frame if something has changed and `mayDraw()` is true. `place` is the robot's place on the floor. */
   draw(place: Place): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.mayDraw() || width === 0 || height === 0) return;
@@ -229,7 +214,7 @@ export class RobotView {
     // A still view is painted once more at full resolution.
     const isStill = now - this.changedAt > STILL_MS;
     const ratio = Math.min(2, devicePixelRatio) * (isStill ? 1 : this.paintBudget.resolution);
-    const size = this.renderer.getSize(new Vector2());
+    const size = this.renderer.getSize(new three.Vector2());
     if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
       this.renderer.setPixelRatio(ratio);
       this.renderer.setSize(width, height, false);
@@ -239,18 +224,18 @@ export class RobotView {
     }
     if (!this.needsDrawing) return;
     this.needsDrawing = false;
-    this.moveGround(place);
+    this.moveGrid(place);
     this.renderer.render(this.scene, this.camera);
     this.paintBudget.notePicture(isStill);
   }
 
-  /** Moves the floor below the robot, which stays in the middle. */
-  private moveGround({ x, y, heading }: Place): void {
+  /** Moves the floor's grid below the robot, which stays in the middle. */
+  private moveGrid({ x, y, heading }: Place): void {
     if (!this.grid) return;
-    const turn = new Matrix4().makeRotationZ((-heading * Math.PI) / 180);
+    const turn = new three.Matrix4().makeRotationZ((-heading * Math.PI) / 180);
     const remainder = (value: number) => value - CELL_MM * Math.round(value / CELL_MM);
     const depth = this.settings.guideStep === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
-    const shift = new Matrix4().makeTranslation(-remainder(x), -remainder(y), depth);
+    const shift = new three.Matrix4().makeTranslation(-remainder(x), -remainder(y), depth);
     this.grid.matrix.copy(turn.multiply(shift));
     this.grid.matrixWorldNeedsUpdate = true;
   }
@@ -258,39 +243,28 @@ export class RobotView {
   /** Returns the index of the foremost body at a point of the canvas, CSS pixels; null if there is none. */
   private bodyAt(x: number, y: number): number | null {
     const { clientWidth, clientHeight } = this.canvas;
-    const ray = new Raycaster();
-    ray.setFromCamera(new Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this.camera);
+    const ray = new three.Raycaster();
+    ray.setFromCamera(new three.Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this.camera);
     const visibleMeshes = this.meshes.filter((mesh) => mesh.visible);
     const hit = ray.intersectObjects(visibleMeshes, false)[0];
     return hit ? this.meshes.indexOf(hit.object as (typeof this.meshes)[number]) : null;
   }
 }
 
-/**
- * Returns a body's colour: the colour of its servo, as in the drawing, for a printed part; else the colour of its
- * material.
- */
+/** The colours of bought bodies by their kinds; a standoff has that of the tubes, and all others are steel. */
+const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
+  servo: '#4a6fa5',
+  board: '#1d7f86',
+  battery: '#b58a2a',
+  pad: '#4b4b4b',
+  lead: '#4b4b4b',
+  horn: '#efefe8',
+  fitting: '#8a6d4b',
+};
+
+/** Returns a body's colour: for a printed part that of its servo, as in the drawing, else that of its material. */
 function colourOf({ kind, servo }: BodyEntry): string {
   const { 'skin-edge': plate, tube, steel } = palette();
-  switch (kind) {
-    case 'printed':
-      return servo === null ? plate : servoColour(servo);
-    case 'servo':
-      return '#4a6fa5';
-    case 'board':
-      return '#1d7f86';
-    case 'battery':
-      return '#b58a2a';
-    case 'pad':
-    case 'lead':
-      return '#4b4b4b';
-    case 'horn':
-      return '#efefe8';
-    case 'fitting':
-      return '#8a6d4b';
-    case 'standoff':
-      return tube;
-    default:
-      return steel;
-  }
+  if (kind === 'printed') return servo === null ? plate : servoColour(servo);
+  return KIND_COLOURS[kind] ?? (kind === 'standoff' ? tube : steel);
 }
