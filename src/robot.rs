@@ -2,7 +2,7 @@
 //!
 //! The code is the same for any robot. The robot's numbers are a separate section
 //! ([`lizard_core::numbers::section`]) at a fixed address. The program reads the robot from there,
-//! so that an upload can replace the robot without the program.
+//! so that an upload can replace the robot and leave the program as it is.
 
 use lizard_core::numbers::section::SPACE_BYTES;
 

@@ -1,8 +1,8 @@
 //! The contacts that routines wait for, each between a pin and ground.
 //!
 //! A contact's pin shares its port with servo pins, whose interrupts may change the port
-//! between any two instructions. So the pull-up is switched on by one store to the PIN register,
-//! which toggles the bits of PORT that are 1 in it (data sheet, 14.2.2).
+//! between any two instructions. So the pull-up is switched on by a single store to the PIN register:
+//! each 1 in the stored byte toggles that bit of PORT (data sheet, 14.2.2).
 
 use servo_pulses::Pin;
 

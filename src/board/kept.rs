@@ -51,7 +51,7 @@ fn cell(index: usize) -> &'static Byte {
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
 /// running. Call it once, with interrupts off, before the watchdog starts.
-pub fn restart(cpu: &CPU) -> Restart {
+pub fn start(cpu: &CPU) -> Restart {
     let flags = cpu.mcusr.read();
     // Several flags may be set; no flag is set if a boot loader has cleared them.
     let reported_cause = if flags.porf().bit_is_set() {

@@ -68,7 +68,7 @@ impl Uno {
                 .portd
                 .modify(|port, w| w.bits(port.bits() & 0x03));
         }
-        let restart = kept::restart(&peripherals.CPU);
+        let restart = kept::start(&peripherals.CPU);
         stack::start();
         led::start();
         sleep::start(peripherals.CPU);
@@ -76,8 +76,8 @@ impl Uno {
         // SAFETY: interrupts are off, and nothing else here uses Timer1 or the servos' pins.
         unsafe { pulses::start() };
         watchdog::start();
-        // SAFETY: every interrupt that is enabled above has its handler, and there
-        // is no critical section around this call to be broken.
+        // SAFETY: every interrupt that is enabled above has its handler, and no critical section surrounds this
+        // call.
         unsafe { avr_device::interrupt::enable() };
         Self {
             writer: serial::Writer,

@@ -18,7 +18,8 @@ const REFERENCE_CHANNEL: u8 = 0x0e;
 /// The Arduino number of the first analogue pin, A0.
 const A0: u8 = 14;
 
-/// The value of ADCSRA that switches the converter on, at 16 MHz / 128 = 125 kHz, since ten bits need 50 to 200 kHz.
+/// The value of ADCSRA that switches the converter on. Its clock rate is then 16 MHz / 128 = 125 kHz; for ten bits of
+/// resolution it must be 50 to 200 kHz.
 const CONVERTER_ON: u8 = 0x87;
 /// The bit of ADCSRA that starts a conversion.
 const START_CONVERSION: u8 = 0x40;

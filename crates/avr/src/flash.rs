@@ -1,11 +1,10 @@
 //! Constants that stay in flash.
 //!
-//! An AVR has two address spaces. A Rust `static` lives in the one for data: it is copied
-//! to RAM at start, and an ATmega328P has 2 KiB of it. Tables and messages belong in the
-//! other, which only the `lpm` instruction reads. [`flash!`](crate::flash!) puts a
-//! constant there; a [`Flash`] is its address, and the only way to read it. On any other
-//! machine it is an ordinary reference, so the same code runs there, even with tables
-//! made at run time.
+//! An AVR has two address spaces. A Rust `static` lives in the one for data: it is copied to RAM at start, and an
+//! ATmega328P has only 2 KiB of RAM. Tables and messages belong in the other, flash, which only the `lpm` instruction
+//! reads. [`flash!`](crate::flash!) puts a constant there; a [`Flash`] is the constant's address, and the only way to
+//! read the constant. On any other machine a [`Flash`] is an ordinary reference, so the same code runs there, even with
+//! tables made at run time.
 //!
 //! A read never fails: an index past the end reads the last element, so the program needs
 //! no code for a panic. (The crate avr-progmem also keeps constants in flash, but it needs
@@ -30,7 +29,7 @@ impl<T: ?Sized> Clone for Flash<'_, T> {
 
 impl<T: ?Sized> Copy for Flash<'_, T> {}
 
-// SAFETY: what `address` points to is never written while a `Flash` of it exists, so
+// SAFETY: the value at `address` is never written while a `Flash` of it exists, so
 // any number of readers on any number of threads see the same value.
 unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
 // SAFETY: as above.
@@ -41,12 +40,12 @@ impl<T: ?Sized> Flash<'_, T> {
     ///
     /// # Safety
     /// For the whole lifetime a value of `T` must be at `address` and must not be written: in the flash
-    /// of an AVR, and in ordinary memory elsewhere. It need not be aligned.
+    /// of an AVR, and in ordinary memory elsewhere. `address` need not be aligned.
     #[doc(hidden)]
     pub const unsafe fn new(address: *const T) -> Self {
         Self {
-            // SAFETY: there is a value at `address`, and none is at address 0: in flash that
-            // is where the interrupt vectors are.
+            // SAFETY: there is a value at `address`, so `address` is not 0: flash begins with the interrupt
+            // vectors.
             address: unsafe { NonNull::new_unchecked(address.cast_mut()) },
             lifetime: PhantomData,
         }
@@ -212,7 +211,7 @@ pub unsafe trait Plain: Copy {
     /// The value's bytes.
     #[inline]
     fn bytes(&self) -> &[u8] {
-        // SAFETY: no byte of it is padding.
+        // SAFETY: no byte of the value is padding.
         unsafe { core::slice::from_raw_parts((&raw const *self).cast(), size_of::<Self>()) }
     }
 }
@@ -269,7 +268,7 @@ macro_rules! plain {
         $crate::plain!($name: $($type),*);
     };
     ($name:ty: $($type:ty),*) => {
-        // SAFETY: all fields are `Plain`, and there is nothing between them.
+        // SAFETY: all fields are `Plain`, and the assertion below excludes padding between them.
         #[allow(unsafe_code)]
         unsafe impl $crate::Plain for $name {}
         const _: () = {
@@ -348,7 +347,7 @@ macro_rules! flash {
     ($($(#[$meta:meta])* $vis:vis const $name:ident: $type:ty = $value:expr;)*) => {$(
         $(#[$meta])*
         $vis const $name: $crate::Flash<'static, $type> = {
-            // SAFETY: the linker script puts this section, the constants, into flash.
+            // SAFETY: the linker script puts this section of constants into flash.
             #[cfg_attr(target_arch = "avr", unsafe(link_section = ".progmem.data"))]
             static VALUE: $type = $value;
             // SAFETY: `VALUE` is a static, and the attribute puts it where `new` requires it.

@@ -1,11 +1,9 @@
 //! Access to AVR features that plain Rust does not offer.
 //!
-//! The firmware's core is plain Rust without `unsafe`, so that it runs and is tested on
-//! any machine. Two features of this processor need more than that: its second address
-//! space, which keeps tables out of the scarce RAM, and its multiplier, which the
-//! compiler leaves idle when it calls a 32-bit library routine for a product of two
-//! 16-bit factors. Both are here, behind safe functions that are plain Rust everywhere
-//! else.
+//! The firmware's core is plain Rust without `unsafe`, so that it can run and be tested on any machine. Two features of
+//! an AVR are out of reach for such code: its second address space, which keeps tables out of the scarce RAM, and its
+//! multiplier, which the compiler leaves idle when it calls a 32-bit library routine for a product of two 16-bit
+//! factors. This crate offers both behind safe functions, which are plain Rust everywhere else.
 //!
 //! Do not use this crate on an AVR with more than 64 KiB of flash: addresses have 16 bits here. For tables that
 //! are always indexed within their bounds, `avr-progmem` also keeps them in flash; it has a richer interface, and

@@ -1,9 +1,9 @@
 //! The flash after the program, which holds the robot's section and is written separately
 //! from the program.
 //!
-//! Data that is written without a compiler lies at a fixed address. On the AVR that address is a constant of
-//! the program, so a region takes no RAM, and reading it costs the same as reading a constant. Any address can
-//! be read, whatever it holds. On any other machine a region is a slice of ordinary memory.
+//! Data that is written without a compiler lies at a fixed address. On an AVR that address is a constant of
+//! the program, so a region takes no RAM, and reading it costs the same as reading a constant. Every address of flash
+//! can be read, whatever it holds. On any other machine a region is a slice of ordinary memory.
 
 use crate::{Flash, Plain};
 
@@ -14,7 +14,7 @@ const IS_PLAIN_LINK: bool = match option_env!("LIZARD_PLAIN_LINK") {
     None => false,
 };
 
-/// The region's first address. Before it there is room for 27.5 KiB of code, or for 29.9 KiB if avr-gcc links.
+/// The region's first address. Before it there is room for 27.5 KiB of code, or for 29.9 KiB with [`IS_PLAIN_LINK`].
 pub const START_ADDRESS: u16 = if IS_PLAIN_LINK { 0x7780 } else { 0x6e00 };
 
 /// The address after the region: where the boot loader of an Arduino UNO begins, or the flash ends.
@@ -34,7 +34,7 @@ pub struct Region<'a> {
 
 #[cfg(not(target_arch = "avr"))]
 impl<'a> Region<'a> {
-    /// The region with which a program begins: no bytes.
+    /// The region that a program starts with: on a host, no bytes.
     pub const INITIAL: Self = Self { bytes: &[] };
 
     /// A region of these bytes.
@@ -89,7 +89,7 @@ impl<'a> Region<'a> {
 
 #[cfg(target_arch = "avr")]
 impl<'a> Region<'a> {
-    /// The region with which a program begins: on the AVR the only region, that of the robot's section.
+    /// The region that a program starts with: on an AVR the only region, that of the robot's section.
     pub const INITIAL: Self = Self {
         lifetime: core::marker::PhantomData,
     };

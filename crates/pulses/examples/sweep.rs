@@ -44,7 +44,7 @@ static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
 static RECEIVED_COUNT: Byte = Byte::new(0);
 
 /// The width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us. The width of each servo
-/// changes by another number of cycles per frame.
+/// changes by a different number of cycles per frame.
 fn width_cycles(servo: u8, frame: u16) -> u16 {
     let cycles_per_frame = 16 * u16::from(servo) + 5;
     let ramp = frame.wrapping_mul(cycles_per_frame) % 32_000;

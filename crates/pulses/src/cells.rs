@@ -15,8 +15,8 @@ use crate::pin::Pin;
 /// single writer.
 pub struct Byte(UnsafeCell<u8>);
 
-// SAFETY: one core, and every access is a single one-byte load or store. No
-// reference to the inside is ever given out.
+// SAFETY: there is one core, and every access is a single load or store of one byte. No
+// reference to the value itself is ever given out.
 unsafe impl Sync for Byte {}
 
 impl Byte {
@@ -125,7 +125,7 @@ impl Counter {
     }
 }
 
-/// The address of the PORT register and the mask of each pin, then zeros up to `SIZE` entries.
+/// Returns the address of the PORT register and the mask of each pin, followed by zeros up to `SIZE` entries.
 #[must_use]
 pub const fn pin_table<const SERVOS: usize, const SIZE: usize>(
     pins: [Pin; SERVOS],

@@ -61,7 +61,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Submits the widths of the next frame, in CPU cycles of 62.5 ns, in the order of the pins; as `u16` or as a
     /// type that converts into it.
     ///
-    /// The engine takes the widths over together before the first slot opens. If a second frame is submitted before
+    /// The engine takes over all widths at once, before the first slot opens. If a second frame is submitted before
     /// that, the first one is never played: see [`Engine::is_taken`]. Without a new frame, the last widths repeat. A
     /// width of 0, or one that does not fit into a slot, gives no pulse: see
     /// [`MIN_WIDTH_CYCLES`](crate::MIN_WIDTH_CYCLES) and [`max_width_cycles`](crate::max_width_cycles).
@@ -79,24 +79,24 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
 
     /// True if the last submitted frame, if any, has been taken over.
     ///
-    /// Check it at every tick. False means that main submitted the frame so late that it waits for the end of this
-    /// tick's slot: then submit no new frame for this tick, if a servo must not jump. If it is true at least at
-    /// every second tick, both handlers run, since one gives the tick and the other takes the frame over.
+    /// Call this at every tick. False means that main submitted the frame so late that it waits for the end of this
+    /// tick's slot: then submit no new frame for this tick, if a servo must not jump. If the result is true at least
+    /// at every second tick, both handlers run, since one counts the ticks and the other takes the frames over.
     #[inline(always)]
     pub fn is_taken(&self) -> bool {
         self.has_new_frame.get() == 0
     }
 
-    /// Prevents all further pulses; one in progress ends as planned, within its slot. Call it before you reset the
-    /// board, which would cut the pulse short and so drive the servo to its end stop. The tick continues. It is a
-    /// single store, so it may be called anywhere, even in an interrupt handler; only a reset undoes it.
+    /// Prevents all further pulses; one in progress ends as planned, within its slot. Call this before you reset the
+    /// board, which would cut the pulse short and so drive the servo to its end stop. The ticks continue. The call is
+    /// a single store, so it is allowed anywhere, even in an interrupt handler; only a reset undoes it.
     #[inline(always)]
     pub fn hush(&self) {
         self.allowed_pins.set(0);
     }
 
-    /// Frames since the start, modulo 256. It is incremented once per frame, one slot before the next frame's first
-    /// pulse.
+    /// The number of frames since the start, modulo 256. It is incremented once per frame, one slot before the next
+    /// frame's first pulse.
     #[inline(always)]
     pub fn ticks(&self) -> u8 {
         self.ticks.get()
@@ -162,7 +162,7 @@ mod tests {
     }
 
     impl<const SIZE: usize> Variables<SIZE> {
-        fn of<const SERVOS: usize>() -> Self {
+        fn for_servos<const SERVOS: usize>() -> Self {
             let bytes = [const { Byte::new(0) }; 7];
             bytes[0].set(SERVOS as u8); // the slot of the tick
             let mut pins = [const { [const { Byte::new(0) }; 2] }; SIZE];
@@ -221,7 +221,7 @@ mod tests {
     }
 
     fn assert_each_servo_has_its_slot<const SERVOS: usize, const SIZE: usize>() {
-        let variables = Variables::<SIZE>::of::<SERVOS>();
+        let variables = Variables::<SIZE>::for_servos::<SERVOS>();
         let engine = variables.engine::<SERVOS>();
         let mut widths = [0; SERVOS];
         for (servo, width) in widths.iter_mut().enumerate() {
@@ -261,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_width_too_short_or_too_long_for_a_slot_makes_no_pulse() {
-        let variables = Variables::<8>::of::<6>();
+        let variables = Variables::<8>::for_servos::<6>();
         let engine = variables.engine::<6>();
         let max_cycles = max_width_cycles(6);
         engine.submit([0, 999, 1_000, max_cycles, max_cycles + 1, u16::MAX]);
@@ -271,7 +271,7 @@ mod tests {
 
     #[test]
     fn a_submitted_frame_is_played_only_from_its_first_slot_on() {
-        let variables = Variables::<4>::of::<4>();
+        let variables = Variables::<4>::for_servos::<4>();
         let engine = variables.engine::<4>();
         engine.submit([20_000u16; 4]);
         engine.plan_next_slot();

@@ -69,8 +69,7 @@
 //!   uses several of them, the times of their handlers add up.
 //! - Interrupts must never be off for 62 us, 1000 cycles. If the end of a slot is missed for this reason, the slot
 //!   is repeated without a pulse, and everything is one slot later from then on.
-//! - Only the two handlers touch Timer1, because all its 16-bit registers share
-//!   one TEMP byte.
+//! - Only the two handlers access Timer1, because all its 16-bit registers share one TEMP byte.
 //! - All other code changes pins of the servos' ports only by single `sbi` and `cbi` instructions, which no
 //!   interrupt can split.
 
@@ -98,7 +97,7 @@ pub use timing::{
 /// - `engine!(PINS)` with a constant `PINS: [Pin; N]`, for pins that are known at compile time.
 /// - `engine!(later: N)` for pins that are known at run time; adds the function `connect`.
 ///
-/// Use it once in a program: a second one defines the same handlers, and the linker refuses it.
+/// Use it once in a program: a second use defines the same handlers again, and the linker refuses them.
 #[macro_export]
 macro_rules! engine {
     (later: $servos:expr) => {
@@ -116,7 +115,7 @@ macro_rules! engine {
         /// Interrupts are off, and nothing else uses Timer1 from now on.
         #[inline(always)]
         pub unsafe fn start() {
-            // SAFETY: as the caller says.
+            // SAFETY: the caller fulfils the same condition.
             unsafe { ENGINE.start() }
         }
     };
@@ -210,7 +209,7 @@ macro_rules! engine {
         /// Interrupts are off, and nothing else uses Timer1 from now on.
         #[inline(always)]
         pub unsafe fn start() {
-            // SAFETY: as the caller says.
+            // SAFETY: the caller fulfils the same condition.
             unsafe { ENGINE.start_with_fixed_pins() }
         }
     };

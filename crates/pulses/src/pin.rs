@@ -45,8 +45,8 @@ impl Pin {
 mod tests {
     use super::*;
 
-    /// Number, port and bit of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram. The ports have
-    /// their names in the data sheet.
+    /// Number, port and bit of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram. The ports are
+    /// named as in the data sheet.
     const SOCKETS: [(u8, char, u8); 20] = [
         (0, 'D', 0),
         (1, 'D', 1),
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn an_uno_has_no_pins_with_numbers_above_19() {
+    fn a_uno_has_no_pins_with_numbers_above_19() {
         for number in 20..=255 {
             assert_eq!(Pin::arduino(number), None);
         }

@@ -5,8 +5,8 @@ use core::arch::asm;
 /// Stores `low | change` in `port` a fixed number of cycles after Timer1 reaches `count` (low
 /// byte first), and returns 0xff. If that count has passed, stores `low` at once and returns 0.
 ///
-/// A falling edge uses this with a `change` of 0: the instructions are the same, so
-/// their cost cancels out of the width.
+/// A falling edge calls it with a `change` of 0: the instructions are the same as for a rising edge, so the time they
+/// take cancels out of the width.
 ///
 /// # Safety
 /// `port` is the PORT register of a servo pin. `low` has the right levels for its other pins until

@@ -1,7 +1,7 @@
 //! The lengths of slots, frames and pulses.
 
-/// Cycles from the compare match until the handler stops waiting; the edge follows a fixed time later. It is at most
-/// 255, because the handler counts the wait in one byte.
+/// Cycles from the compare match until the handler stops waiting; the edge follows a fixed time later. At most 255,
+/// because the handler counts the wait in one byte.
 pub const LEAD_CYCLES: u8 = 220;
 
 /// CPU cycles in a microsecond: the CPU runs at 16 MHz, and Timer1 counts each cycle.

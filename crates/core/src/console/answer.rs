@@ -8,7 +8,7 @@ use crate::numbers::gaits::GaitId;
 
 /// The next line of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Starts at 1, since `None` has to be zero: see `Main::new`.
+// Discriminants start at 1, so that `Option::None` is all zeros: see `Main::new`.
 #[repr(u8)]
 pub enum Answer {
     /// `ok` and the line as the console understood it.
@@ -40,8 +40,8 @@ pub enum Answer {
 /// The board's counters, as `status` prints them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Pulse edges that came late.
+    /// Number of late pulse edges.
     pub late_edges: u16,
-    /// Received bytes that were lost.
+    /// Number of received bytes that were lost or garbled.
     pub rx_lost: u16,
 }

@@ -47,14 +47,14 @@ pub enum LineError {
     WrongArguments(Text),
     /// An argument is out of range; the text gives the range.
     OutOfRange(Text),
-    /// The angle for this servo in a `pose` command is more than a turn.
+    /// The angle for this servo in a `pose` command exceeds one turn.
     AngleOutOfRange(Servo),
 }
 
 /// The longest interval that `watch` accepts, frames: 200 s.
 pub const MAX_WATCH_FRAMES: u16 = 10_000;
 
-/// The largest number of cycles that a gait accepts.
+/// The largest number of cycles that the command of a gait accepts.
 pub const MAX_CYCLES: u16 = 999;
 
 /// The longest time that `deadman` accepts, ms: a minute.
@@ -162,7 +162,7 @@ fn parse_with_priority<const FIRST_YIELDING_INDEX: usize>(
         None => Arguments::NONE,
     };
     let [first_number, second_number, ..] = numbers;
-    let order_of = |setting| Order::Set(servo, setting);
+    let setting_order = |setting| Order::Set(servo, setting);
     Ok(Command::Order(match word {
         Word::Help | Word::QuestionMark => return Ok(Command::Help),
         Word::Status => return Ok(Command::Status),
@@ -173,10 +173,10 @@ fn parse_with_priority<const FIRST_YIELDING_INDEX: usize>(
         Word::Pose => Order::Pose(numbers.map(Angle)),
         Word::Center => Order::Center,
         Word::Speed => Order::Speed(first_number as u8),
-        Word::Trim => order_of(Setting::Trim(Sweep(first_number as i16))),
-        Word::Limit => order_of(Setting::Limit(Angle(first_number), Angle(second_number))),
-        Word::Dir => order_of(Setting::Direction(first_number != 0)),
-        Word::Scale => order_of(Setting::Scale(first_number)),
+        Word::Trim => setting_order(Setting::Trim(Sweep(first_number as i16))),
+        Word::Limit => setting_order(Setting::Limit(Angle(first_number), Angle(second_number))),
+        Word::Dir => setting_order(Setting::Direction(first_number != 0)),
+        Word::Scale => setting_order(Setting::Scale(first_number)),
         Word::Save => Order::Save,
         Word::Load => Order::Load,
         Word::Factory => Order::Factory,
@@ -285,7 +285,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait with whose name the line begins, and parses the number of cycles after the name; 0 if there is none.
+/// Finds the gait whose name the line begins with, and parses the number of cycles after the name; 0 if there is none.
 /// Words may be separated by any blanks. If a gait's name is that of another gait followed by a number, the longer
 /// name has priority.
 #[inline(never)]

@@ -33,7 +33,7 @@ enum PendingLine {
     Banner,
     /// The answer to the last line received, or a part of it.
     Answer(Answer),
-    /// A notice, which no command has asked for.
+    /// An unsolicited notice.
     Notice(Notice),
     /// The reason why the guard holds the robot.
     HoldReason,
@@ -97,7 +97,7 @@ impl Console {
         Some(rate)
     }
 
-    /// True while a line waits to be written. Meanwhile the caller passes no byte on, since the answer may
+    /// True while a line waits to be written. Meanwhile the caller passes no byte to the console, since the answer may
     /// quote the received line.
     pub const fn has_output(&self, control: &Controller) -> bool {
         self.next_pending_line(control).is_some()

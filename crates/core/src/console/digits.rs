@@ -64,7 +64,7 @@ pub fn print_hundredths(out: &mut impl Output, text: Text, hundredths: u16) {
     print_number(out, hundredths.into(), 2)
 }
 
-/// Prints a text, then a whole number.
+/// Prints a text, then a integer number.
 #[inline(never)]
 pub fn print_count(out: &mut impl Output, text: Text, count: u32) {
     text.print(out);
@@ -101,14 +101,14 @@ mod tests {
         text
     }
 
-    /// The number as the standard library prints it.
-    fn standard_text_of(value: u32, decimals: usize) -> String {
+    /// Formats a number as the standard library does.
+    fn standard_text(value: u32, decimals: usize) -> String {
         let digits = format!("{value:0>width$}", width = decimals + 1);
-        let (whole, fraction) = digits.split_at(digits.len() - decimals);
+        let (integer, fraction) = digits.split_at(digits.len() - decimals);
         if decimals == 0 {
-            whole.to_string()
+            integer.to_string()
         } else {
-            format!("{whole}.{fraction}")
+            format!("{integer}.{fraction}")
         }
     }
 
@@ -122,7 +122,7 @@ mod tests {
             for decimals in 0..=3 {
                 assert_eq!(
                     print_to_string(value, decimals),
-                    standard_text_of(value, decimals)
+                    standard_text(value, decimals)
                 );
             }
         }
@@ -136,7 +136,7 @@ mod tests {
             let sign = if value < 0 { "-" } else { "" };
             assert_eq!(
                 text,
-                format!("{sign}{}", standard_text_of(value.unsigned_abs(), 3))
+                format!("{sign}{}", standard_text(value.unsigned_abs(), 3))
             );
         }
     }
@@ -154,7 +154,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_number_is_printed_as_the_standard_library_would(value: u32, decimals in 0usize..=3) {
-            prop_assert_eq!(print_to_string(value, decimals), standard_text_of(value, decimals));
+            prop_assert_eq!(print_to_string(value, decimals), standard_text(value, decimals));
         }
     }
 }

@@ -1,18 +1,18 @@
 //! Detects the baud rate of the sender on the serial line (autobaud).
 //!
 //! A radio module has a baud rate of its own, which only the received bytes reveal. At a wrong
-//! rate, most bytes arrive garbled or are not ASCII. After a few such bytes, the next
-//! slower rate is tried. So until the sender's rate is reached, the receiver is the faster of the
-//! two, and a receiver that is too fast never reads the end of a line.
+//! rate, most bytes arrive garbled or are not ASCII. After a few such bytes, the robot tries the next
+//! slower rate. So until the sender's rate is reached, the receiver is faster than the
+//! sender, and a receiver that is too fast never reads the end of a line.
 //!
 //! The rate changes only in a pause of the sender, so that the next byte is read from its first bit.
 
 use crate::numbers::rate::BaudRate;
 
-/// The number of wrong bytes after which a rate is given up.
+/// The number of wrong bytes after which a rate is abandoned.
 const WRONG_BYTE_LIMIT: i8 = 4;
 
-/// The number of additional wrong bytes after which a rate that has carried a command is given up: noise, or another
+/// The number of additional wrong bytes after which a rate that has carried a command is abandoned: noise, or another
 /// sender, must not cut off a robot that is being driven.
 const EXTRA_WRONG_BYTES: i8 = 28;
 
@@ -35,7 +35,7 @@ pub struct RateFinder {
 }
 
 impl RateFinder {
-    /// A finder that begins with this rate.
+    /// Creates a finder that starts with this rate.
     pub const fn new(rate: BaudRate) -> Self {
         Self {
             rate,

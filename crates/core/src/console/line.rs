@@ -102,8 +102,8 @@ mod tests {
 
     use super::*;
 
-    /// The text of every line that the bytes complete; `None` for a line that is too long or garbled.
-    fn completed_lines_of(bytes: &[u8]) -> Vec<Option<String>> {
+    /// Returns the text of every line that the bytes complete; `None` for a line that is too long or garbled.
+    fn completed_lines(bytes: &[u8]) -> Vec<Option<String>> {
         let mut line = Line::new();
         let mut lines = Vec::new();
         for byte in bytes {
@@ -118,25 +118,24 @@ mod tests {
         lines
     }
 
-    /// The same as [`completed_lines_of`], by a simple reference implementation.
+    /// Does the same as [`completed_lines`], by a simple reference implementation.
     fn split_by_reference_implementation(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
             let mut typed_text = String::new();
-            // True for a line that is too long or garbled.
-            let mut is_dropped = false;
+            let mut is_too_long_or_garbled = false;
             for byte in line {
                 match byte {
                     0x08 | 0x7f => drop(typed_text.pop()),
-                    0x80.. => is_dropped = true,
-                    _ if typed_text.chars().count() == 63 => is_dropped = true,
+                    0x80.. => is_too_long_or_garbled = true,
+                    _ if typed_text.chars().count() == 63 => is_too_long_or_garbled = true,
                     _ => typed_text.push(char::from(*byte)),
                 }
             }
             let text = typed_text
                 .trim_matches([' ', '\t', '\x0c'])
                 .to_ascii_lowercase();
-            lines.push((!is_dropped).then_some(text));
+            lines.push((!is_too_long_or_garbled).then_some(text));
         }
         // The last line has not ended yet.
         lines.pop();
@@ -150,7 +149,7 @@ mod tests {
             let bytes = std::format!("{line_end}one{line_end}two{line_end}");
             let expected_lines = ["one", "two"].map(|text| Some(text.to_string()));
             assert_eq!(
-                completed_lines_of(bytes.as_bytes()),
+                completed_lines(bytes.as_bytes()),
                 expected_lines,
                 "{line_end:?}"
             );
@@ -158,19 +157,19 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_63_characters_at_most_and_the_next_one_is_a_new_one() {
+    fn a_line_has_at_most_63_characters_and_a_longer_one_does_not_affect_the_next() {
         for length in [62, 63, 64, 65, 200, 5000] {
             let text = "x".repeat(length);
             let bytes = std::format!("{text}\rstand\r");
             let first_line = (length <= 63).then_some(text);
             assert_eq!(
-                completed_lines_of(bytes.as_bytes()),
+                completed_lines(bytes.as_bytes()),
                 [first_line, Some("stand".to_string())]
             );
         }
         // Leading blanks count towards the 63 characters.
         assert_eq!(
-            completed_lines_of(std::format!("{:>64}\r", "stand").as_bytes()),
+            completed_lines(std::format!("{:>64}\r", "stand").as_bytes()),
             [None]
         );
     }
@@ -183,13 +182,10 @@ mod tests {
                 std::format!("walt{delete_byte}k\r"),
                 std::format!("{five_deletions}walk\r"),
             ] {
-                assert_eq!(
-                    completed_lines_of(line.as_bytes()),
-                    [Some("walk".to_string())]
-                );
+                assert_eq!(completed_lines(line.as_bytes()), [Some("walk".to_string())]);
             }
             assert_eq!(
-                completed_lines_of(std::format!("stand{five_deletions}\r").as_bytes()),
+                completed_lines(std::format!("stand{five_deletions}\r").as_bytes()),
                 []
             );
         }
@@ -198,7 +194,7 @@ mod tests {
     #[test]
     fn a_line_is_read_in_lower_case_without_the_blanks_around_it() {
         assert_eq!(
-            completed_lines_of(b"  Arc \t LEFT\t \n"),
+            completed_lines(b"  Arc \t LEFT\t \n"),
             [Some("arc \t left".to_string())]
         );
     }
@@ -235,7 +231,7 @@ mod tests {
             ),
         ) {
             let bytes = pieces.concat();
-            prop_assert_eq!(completed_lines_of(&bytes), split_by_reference_implementation(&bytes));
+            prop_assert_eq!(completed_lines(&bytes), split_by_reference_implementation(&bytes));
         }
     }
 }

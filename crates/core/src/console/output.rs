@@ -1,4 +1,4 @@
-//! The destination of printed text. Every `ufmt` writer that cannot fail is one.
+//! The destination of printed text: any `ufmt` writer that cannot fail.
 
 use core::convert::Infallible;
 

@@ -32,7 +32,7 @@ const CAL_DEADMAN_LINE: u8 = 5;
 /// The index of the line `ok cal`.
 const CAL_LAST_LINE: u8 = 6;
 
-/// Prints a line, or a part of one, of an answer; returns what is to be printed next, if anything.
+/// Prints a line, or a part of one, of an answer; returns the line or part to be printed next, if any.
 #[inline(never)]
 pub(super) fn print_answer(
     out: &mut impl Output,
@@ -77,9 +77,9 @@ pub(super) fn print_answer(
             return Some(Answer::StatusHealth);
         }
         Answer::StatusHealth => print_health(out, control, counters),
-        Answer::Settings(number) => {
-            if print_settings_line(out, number, control) {
-                return Some(Answer::Settings(number + 1));
+        Answer::Settings(line_index) => {
+            if print_settings_line(out, line_index, control) {
+                return Some(Answer::Settings(line_index + 1));
             }
         }
     }
@@ -120,11 +120,8 @@ fn print_status(out: &mut impl Output, control: &Controller) {
     match control.activity() {
         // A gait's name as a value without a blank: `arc-left`.
         Activity::Gait(gait) => {
-            let bytes = robot.gait_name(gait);
-            digits::print_ascii(
-                out,
-                bytes.map(|byte| if byte == b' ' { b'-' } else { byte }),
-            );
+            let name = robot.gait_name(gait);
+            digits::print_ascii(out, name.map(|byte| if byte == b' ' { b'-' } else { byte }));
         }
         Activity::Pose => Text::Pose.print(out),
         Activity::Stop => Text::Stop.print(out),
@@ -239,7 +236,7 @@ fn print_boot(out: &mut impl Output, control: &Controller) {
     }
 }
 
-/// Prints a notice, which is a line that no command has asked for.
+/// Prints a notice: an unsolicited line.
 pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Controller) {
     match notice {
         Notice::SavedSettings => match control.saved_state() {
@@ -328,7 +325,7 @@ pub(super) fn print_banner(out: &mut impl Output, robot: &Robot) {
     Text::BannerEnd.print(out)
 }
 
-/// The word for a fault in `status`.
+/// Returns the word for a fault in `status`.
 const fn fault_word(fault: Fault) -> Text {
     match fault {
         Fault::Guard => Text::FaultGuard,
@@ -342,7 +339,7 @@ const fn fault_word(fault: Fault) -> Text {
     }
 }
 
-/// The message that announces a fault.
+/// Returns the message that announces a fault.
 const fn fault_message(fault: Fault) -> Text {
     match fault {
         Fault::Guard => Text::WhyGuard,
@@ -356,7 +353,7 @@ const fn fault_message(fault: Fault) -> Text {
     }
 }
 
-/// The word for a reset's cause in `status`.
+/// Returns the word for a reset's cause in `status`.
 const fn cause_word(cause: Cause) -> Text {
     match cause {
         Cause::Power => Text::CausePower,

@@ -40,7 +40,7 @@ texts! {
     CalBoot = "# boot ";
     CalDeadman = "# deadman ";
 
-    // Notices: lines that come without a command.
+    // Notices: unsolicited lines.
     MemoryBlank = "# calibration: none is saved, robot.toml's is in use";
     MemoryOneCopy = "# calibration: one of two copies is damaged, the other is in use";
     MemoryDamaged = "# calibration: damaged, robot.toml's is in use";
@@ -220,7 +220,7 @@ impl Text {
     /// Prints the message.
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
-        let mut current_string = PackedString::of(self as u8);
+        let mut current_string = PackedString::at(self as u8);
         // The rest of the message after the phrase that is being printed.
         let mut message_rest = PackedString::EMPTY;
         loop {
@@ -244,7 +244,7 @@ impl Text {
                 }
                 Some(phrase_index) => {
                     message_rest = current_string;
-                    current_string = PackedString::of(MESSAGE_COUNT as u8 + phrase_index);
+                    current_string = PackedString::at(MESSAGE_COUNT as u8 + phrase_index);
                 }
             }
         }
@@ -256,7 +256,7 @@ impl Text {
     }
 }
 
-/// The nibbles of a string that are still to be read.
+/// The unread nibbles of a packed string.
 #[derive(Clone, Copy)]
 struct PackedString {
     /// The index of the next nibble.
@@ -270,9 +270,9 @@ impl PackedString {
         nibbles_left: 0,
     };
 
-    /// All nibbles of a message or a phrase.
+    /// Returns the packed message or phrase with this index; none of its nibbles has been read.
     #[inline(never)]
-    fn of(string_index: u8) -> Self {
+    fn at(string_index: u8) -> Self {
         let string_index = usize::from(string_index);
         let length_of = |string_index| STRING_LENGTHS.at(string_index).load();
         let mut nibble_index = BLOCK_STARTS.at(string_index / STRINGS_PER_BLOCK).load();
@@ -300,7 +300,7 @@ impl PackedString {
     }
 }
 
-/// All strings as nibbles; the first of each two is in the lower half of a byte.
+/// All strings as nibbles, two in each byte, the first of each pair in the lower half.
 struct PackedStrings {
     nibbles: [u8; BUFFER_BYTES],
     nibble_count: usize,
@@ -373,8 +373,8 @@ const fn pack_strings() -> PackedStrings {
     packed
 }
 
-/// Finds the first phrase with which a text begins. Returns its index and the rest of the text; `None` if the text
-/// begins with no phrase.
+/// Finds the first phrase that a text begins with. Returns the phrase's index and the rest of the text; `None` if the
+/// text begins with no phrase.
 const fn find_phrase(text: &[u8]) -> Option<(usize, &[u8])> {
     let mut phrase_index = 0;
     while phrase_index < PHRASES.len() {
@@ -394,7 +394,7 @@ const fn find_phrase(text: &[u8]) -> Option<(usize, &[u8])> {
     None
 }
 
-/// The code of a character.
+/// Returns the code of a character.
 const fn character_code(character: u8) -> usize {
     let mut code = 0;
     while ALPHABET[code] != character {
@@ -411,7 +411,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_message_is_printed_whole_and_has_its_length() {
+    fn a_message_is_printed_completely_and_its_length_is_right() {
         for (text, expected) in [
             (Text::Banner, "# lizard "),
             (Text::Version, env!("CARGO_PKG_VERSION")),

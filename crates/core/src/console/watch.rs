@@ -1,6 +1,6 @@
-//! The timer of the pose reports that `watch` asks for.
+//! The timer of the pose reports that `watch` requests.
 
-/// The timer of the pose reports.
+/// A timer that makes a pose report due at regular intervals.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     /// Frames from one report to the next; 0 for no reports.
@@ -12,7 +12,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// A timer for one report every `interval_frames` frames, the first after as many; for none if it is 0.
+    /// Creates a timer that makes a report due once every `interval_frames` frames, or never if that is 0.
     pub(super) const fn new(interval_frames: u16) -> Self {
         Self {
             interval_frames,

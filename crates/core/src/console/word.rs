@@ -6,7 +6,7 @@ use crate::console::output::Output;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::robot::Robot;
 
-/// The effect on the servos of a command that the robot carries out.
+/// The effect of an accepted command on the servos.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// No pulse changes: the command is a question, or a setting that takes effect later.
@@ -58,7 +58,7 @@ macro_rules! words {
                 match self { $(Self::$name => Effect::$effect),* }
             }
 
-            /// A line that the paper's robot accepts: the word, with any arguments it needs.
+            /// A line that the robot of robots/paper.toml accepts: the word, with any arguments it needs.
             pub const fn example(self) -> &'static str {
                 match self { $(Self::$name => concat!($word, $arguments)),* }
             }
@@ -180,14 +180,14 @@ mod tests {
         scale|cal|center|save|load|factory|boot|deadman";
 
     #[test]
-    fn the_reserved_words_are_those_of_the_first_versions_and_no_other() {
+    fn the_reserved_words_are_exactly_those_of_the_first_version() {
         let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
         let reserved_words: Vec<&str> = reserved.map(|word| word.text()).collect();
         assert_eq!(reserved_words.join("|"), FIRST_VERSION_WORDS);
     }
 
     #[test]
-    fn every_listed_word_is_found_and_nothing_else_is() {
+    fn every_word_is_found_by_its_exact_spelling_only() {
         for word in Word::ALL {
             let text = word.text();
             assert_eq!(Word::find(text.as_bytes()), Some(*word), "{text}");
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_that_yields_is_left_out_where_a_gait_has_its_whole_name() {
+    fn a_word_that_yields_is_left_out_if_a_gait_has_the_same_name() {
         let robot = Sample::paper();
         assert_lists_all_but::<RESERVED_COUNT>(&robot, &[]);
         assert_lists_all_but::<1>(&robot, &[]);

@@ -37,7 +37,7 @@ fn port_register(address: u8) -> *mut u8 {
 /// The register is one of Timer1's.
 #[inline(always)]
 unsafe fn write_register<T>(register: usize, value: T) {
-    // SAFETY: as the caller says.
+    // SAFETY: the caller fulfils the same condition.
     unsafe { with_exposed_provenance_mut::<T>(register).write_volatile(value) }
 }
 
@@ -62,7 +62,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     #[inline(always)]
     pub unsafe fn start_with_fixed_pins(&self) {
         self.drive_pins_low();
-        // SAFETY: as the caller says.
+        // SAFETY: the caller fulfils the same condition.
         unsafe { self.start() }
     }
 
@@ -115,7 +115,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Opens a slot: raises its pin or, in the slot without a pin, counts a tick.
     ///
     /// # Safety
-    /// Only in the handler of Timer1's compare match A.
+    /// Call it only in the handler of Timer1's compare match A.
     #[doc(hidden)]
     #[inline(always)]
     pub unsafe fn open_slot(&self) {
@@ -150,7 +150,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Closes a slot: lowers its pin and plans the next slot.
     ///
     /// # Safety
-    /// Only in the handler of Timer1's compare match B.
+    /// Call it only in the handler of Timer1's compare match B.
     #[doc(hidden)]
     #[inline(always)]
     pub unsafe fn close_slot(&self) {

@@ -13,7 +13,7 @@ fn parse_line(line: &str) -> Result<Command, LineError> {
     parse(line.as_bytes(), &Sample::odd())
 }
 
-/// The command that starts a gait without a number of cycles.
+/// Returns the command that starts a gait without a number of cycles.
 fn command_of_gait(gait: GaitId) -> Command {
     Command::Order(Order::Gait(gait, 0))
 }
@@ -116,7 +116,7 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
     }
 }
 
-/// The angle that the console reads from these degrees.
+/// Returns the angle that the console reads from these degrees.
 fn angle_of(degrees: f64) -> Angle {
     Angle::from_centideg((degrees * 100.0).round() as i32)
 }

@@ -71,7 +71,7 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
 }
 
 #[test]
-fn help_lists_every_gait_and_every_command_and_may_be_asked_twice() {
+fn help_lists_every_gait_and_every_command_as_often_as_it_is_sent() {
     let mut dialogue = wake_odd_robot();
     let printed_lines = dialogue.send(b"help\r");
     let gaits_line = format!("# gaits: {}", GAIT_NAMES.join("|"));
@@ -124,7 +124,7 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
     }
 }
 
-/// Runs a robot until the guard holds it; its output has not been read since.
+/// Runs a robot, without reading its output, until the guard holds it.
 fn run_until_guard_holds() -> Dialogue {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("stray");

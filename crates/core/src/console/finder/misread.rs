@@ -41,7 +41,7 @@ enum LineReading {
 }
 
 impl LineReading {
-    /// The reading after another byte.
+    /// Returns the reading after another byte.
     fn after_byte(self, byte: u8, automaton: &LineAutomaton) -> Self {
         match (byte.to_ascii_lowercase(), self) {
             (b'\r' | b'\n', Self::CommandPrefix(state))
@@ -81,8 +81,8 @@ struct BitGraph {
 }
 
 impl BitGraph {
-    /// The bits of a line that the automaton accepts, sent without pauses, and the idle line after its end.
-    fn of(automaton: &LineAutomaton) -> Self {
+    /// Creates the graph of every line that the automaton accepts, sent without pauses and followed by the idle line.
+    fn for_automaton(automaton: &LineAutomaton) -> Self {
         let mut bytes: Vec<(usize, u8, Option<usize>)> = Vec::new();
         for (state, transitions) in automaton.transitions.iter().enumerate() {
             bytes.extend(
@@ -132,11 +132,11 @@ impl BitGraph {
         graph
     }
 
-    /// The bits of any sequence of 7-bit bytes, with or without pauses between them.
+    /// Creates the graph of any sequence of 7-bit bytes, with or without pauses between them.
     fn with_any_bytes() -> Self {
         let mut automaton = LineAutomaton::new();
         automaton.transitions[0] = (0..0x80).map(|byte| (byte, 0)).collect();
-        let mut graph = Self::of(&automaton);
+        let mut graph = Self::for_automaton(&automaton);
         graph.successors[0].extend(graph.first_start_bits.clone());
         for index in 0..0x80 {
             graph.successors[10 + 10 * index].push(0);
@@ -145,8 +145,8 @@ impl BitGraph {
     }
 }
 
-/// The times at which a receiver may sample the ten bits of a byte, in whole bits of the sender after the start edge:
-/// one array for each clock error and each sample point.
+/// Returns the times at which a receiver may sample the ten bits of a byte, in completed bits of the sender since the
+/// start edge: one array for each clock error and each sample point.
 fn possible_sample_times(sender: BaudRate, receiver: BaudRate) -> BTreeSet<[usize; 10]> {
     // The nearest rate that the chip's divider can produce, as in src/board/serial.rs.
     let chip_baud = 2e6 / (2e6 / f64::from(receiver.baud())).round();
@@ -169,7 +169,7 @@ fn possible_sample_times(sender: BaudRate, receiver: BaudRate) -> BTreeSet<[usiz
 /// A receiver's reading, and the bit of the graph that the sender is sending.
 type ReceiverState = (LineReading, usize);
 
-/// Reads a byte from each of these start edges; returns all possible states after it.
+/// Reads a byte from each of these start edges; returns all possible states after the byte.
 fn read_byte(
     start_edges: &BTreeSet<ReceiverState>,
     graph: &BitGraph,
@@ -217,7 +217,7 @@ fn read_byte(
     current_states.into_iter().map(finish_byte).collect()
 }
 
-/// The start edges that can follow these states.
+/// Finds the start edges that can follow these states.
 fn start_edges_after(states: BTreeSet<ReceiverState>, graph: &BitGraph) -> BTreeSet<ReceiverState> {
     let (mut visited, mut start_edges) = (BTreeSet::new(), BTreeSet::new());
     let mut to_visit: Vec<ReceiverState> = states.into_iter().collect();
@@ -240,7 +240,7 @@ fn start_edges_after(states: BTreeSet<ReceiverState>, graph: &BitGraph) -> BTree
 /// command is given by its last state.
 fn find_readable_commands(sender: BaudRate, receiver: BaudRate) -> BTreeSet<usize> {
     let (graph, automaton) = (
-        BitGraph::of(&LineAutomaton::all_commands()),
+        BitGraph::for_automaton(&LineAutomaton::all_commands()),
         LineAutomaton::accepted_lines(),
     );
     let initial_readings = [
@@ -249,7 +249,7 @@ fn find_readable_commands(sender: BaudRate, receiver: BaudRate) -> BTreeSet<usiz
         LineReading::Garbled,
     ];
     let mut to_visit: BTreeSet<ReceiverState> = (graph.first_start_bits.iter())
-        .flat_map(|state| initial_readings.map(|reading| (reading, *state)))
+        .flat_map(|start_bit| initial_readings.map(|reading| (reading, *start_bit)))
         .collect();
     let (mut visited, mut commands) = (to_visit.clone(), BTreeSet::new());
     while !to_visit.is_empty() {
@@ -276,8 +276,8 @@ fn find_readable_commands(sender: BaudRate, receiver: BaudRate) -> BTreeSet<usiz
     commands
 }
 
-/// The pairs (sender, receiver) of different rates whose sender is the faster one if `is_sender_faster` is true, and
-/// the slower one otherwise.
+/// Returns the pairs (sender, receiver) of different rates: those whose sender is faster if `is_sender_faster` is true,
+/// else those whose sender is slower.
 fn rate_pairs(is_sender_faster: bool) -> impl Iterator<Item = (BaudRate, BaudRate)> {
     let senders = BaudRate::ALL.into_iter();
     let pairs = senders.flat_map(|sender| BaudRate::ALL.map(|receiver| (sender, receiver)));
@@ -292,13 +292,13 @@ fn a_receiver_faster_than_the_sender_reads_no_line_end_in_any_bytes() {
     let automaton = LineAutomaton::accepted_lines();
     for (sender, receiver) in rate_pairs(false) {
         let start_edges: BTreeSet<ReceiverState> = (0..graph.levels.len())
-            .filter(|state| graph.levels[*state])
-            .flat_map(|state| {
-                graph.successors[state]
+            .filter(|bit_index| graph.levels[*bit_index])
+            .flat_map(|bit_index| {
+                graph.successors[bit_index]
                     .iter()
                     .filter(|next_bit| !graph.levels[**next_bit])
             })
-            .map(|state| (LineReading::Garbled, *state))
+            .map(|start_bit| (LineReading::Garbled, *start_bit))
             .collect();
         assert!(start_edges.len() > 128);
         for sample_times in possible_sample_times(sender, receiver) {

@@ -3,11 +3,11 @@
 use super::*;
 use crate::console::line::GARBLED_BYTE;
 
-/// Gives a finder these bytes and then a pause; returns the rate to which it changes, if any.
+/// Feeds a finder these bytes and then a pause; returns the rate to which the finder changes, if any.
 fn feed_and_pause(finder: &mut RateFinder, bytes: &[u8]) -> Option<BaudRate> {
     for byte in bytes {
         finder.note_byte(*byte);
-        // A frame in which a byte arrives is no pause.
+        // A frame in which a byte arrives is not a pause.
         assert_eq!(finder.end_frame(), None);
     }
     finder.end_frame()

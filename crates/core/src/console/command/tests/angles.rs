@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A `pose` line with the given angle for the servo at `index`, and neutral angles for the other three.
+/// Returns a `pose` line with the given angle for the servo at `index`, and neutral angles for the other three.
 fn pose_line(index: usize, angle: &str) -> String {
     let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
     words[index] = angle.to_string();

@@ -48,7 +48,7 @@ fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
 }
 
-/// The number of final lines with which the robot must answer these bytes.
+/// Counts the final lines with which the robot must answer these bytes.
 fn count_answers_due(bytes: &[u8]) -> usize {
     let mut line = Line::new();
     bytes
@@ -61,7 +61,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn every_line_of_random_bytes_gets_one_final_line_however_slowly_the_bytes_come(
+    fn every_line_of_random_bytes_gets_one_final_line_however_slowly_the_bytes_arrive(
         bytes in any_bytes(),
         frames_between in 0u32..3,
     ) {

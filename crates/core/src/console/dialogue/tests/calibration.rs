@@ -199,19 +199,19 @@ fn a_factory_or_load_command_that_is_refused_changes_nothing() {
     let lines_before = read_cal(&mut dialogue);
     dialogue.expect_refused("load", "3 A1 would not reach where it is");
     assert_eq!(read_cal(&mut dialogue), lines_before);
-    let mut other_dialogue = wake_odd_robot();
-    other_dialogue.send_line("trim 3 4");
-    let lines_before = read_cal(&mut other_dialogue);
-    other_dialogue.board.memory.bytes_mut()[0] = 0;
-    other_dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
-    assert_eq!(read_cal(&mut other_dialogue), lines_before);
+    let mut trimmed_dialogue = wake_odd_robot();
+    trimmed_dialogue.send_line("trim 3 4");
+    let lines_before = read_cal(&mut trimmed_dialogue);
+    trimmed_dialogue.board.memory.bytes_mut()[0] = 0;
+    trimmed_dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
+    assert_eq!(read_cal(&mut trimmed_dialogue), lines_before);
     // Settings for other servos are not loaded, and the current ones stay.
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("save");
-    other_dialogue.board.memory = dialogue.board.memory.clone();
-    other_dialogue.board.memory.bytes_mut()[44] ^= 1;
-    other_dialogue.expect_refused("load", "9 ");
-    assert_eq!(read_cal(&mut other_dialogue), lines_before);
+    trimmed_dialogue.board.memory = dialogue.board.memory.clone();
+    trimmed_dialogue.board.memory.bytes_mut()[44] ^= 1;
+    trimmed_dialogue.expect_refused("load", "9 ");
+    assert_eq!(read_cal(&mut trimmed_dialogue), lines_before);
     // A trim shifts the travel: the pose below is within the shifted travel, but not within that of robot.toml.
     let narrow_max = Sweep(2200);
     let robot =
@@ -256,7 +256,7 @@ fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits()
 }
 
 #[test]
-fn center_goes_to_the_neutral_pulses_of_robot_toml_with_any_trims() {
+fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
     let mut dialogue = wake_odd_robot();
     for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
         dialogue.send_line(line);

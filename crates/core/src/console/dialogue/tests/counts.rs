@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Frames that are enough for the move to `sway`, three of its cycles, and the braking.
+/// A number of frames that is enough for the move to `sway`, three of its cycles, and the braking.
 const LONG_FRAMES: u32 = 400;
 
 #[test]

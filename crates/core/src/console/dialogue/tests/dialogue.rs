@@ -1,4 +1,4 @@
-//! A simulated robot, and helpers to talk with it over its serial line.
+//! A simulated robot, and helpers that converse with it over its serial line.
 
 use std::collections::HashMap;
 use std::string::{String, ToString};
@@ -54,7 +54,7 @@ pub(super) fn set_supply(dialogue: &mut Dialogue, mv: u32) {
     dialogue.board.converter.set_true_reading(reading);
 }
 
-/// The neutral pose in the format of `status`.
+/// Returns the neutral pose in the format of `status`.
 pub(super) fn neutral_pose_text() -> String {
     NEUTRAL_COMMAND.replacen("pose ", "", 1).replace(' ', ",")
 }

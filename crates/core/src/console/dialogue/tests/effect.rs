@@ -13,7 +13,7 @@ fn run_frames_and_read_widths(dialogue: &mut Dialogue) -> Vec<[u16; 4]> {
         .collect()
 }
 
-/// Finds the effect of a line from its results: the pulses and the calibration of a robot.
+/// Determines the effect of a line from its results: the pulses and the calibration of a robot.
 fn observe_effect(line: &str) -> Effect {
     let mut walking_dialogue = wake_robot(Sample::paper());
     // These settings make `load` and `factory` change something.

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_comes() {
+fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
     let mut dialogue = wake_odd_robot();
     for boot in ["sway left", "rest"] {
         dialogue.send_line(&format!("boot {boot}"));
@@ -108,7 +108,7 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
 }
 
 #[test]
-fn each_byte_of_a_line_restarts_the_time_after_which_it_is_dropped() {
+fn each_byte_of_a_line_restarts_the_time_after_which_the_line_is_dropped() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("deadman 400");
     for byte in b"sway 1" {
@@ -165,7 +165,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     dialogue.expect_accepted("stand");
 }
 
-/// The state of servos that were held in a pose by the pulses of robot.toml.
+/// Returns the state of servos that the pulses of robot.toml held in a pose.
 fn held_stance(sweeps: [i16; 4]) -> Stance {
     let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
     Stance {
@@ -176,7 +176,7 @@ fn held_stance(sweeps: [i16; 4]) -> Stance {
     }
 }
 
-/// The restart after the last of `count` hangs in a row, with this state of the servos before it.
+/// Returns the restart after the last of `count` consecutive hangs, with this state of the servos before it.
 fn restart_after_hang(count: u8, stance: Stance) -> Restart {
     Restart {
         cause: Cause::Watchdog,
@@ -444,7 +444,7 @@ fn a_line_before_all_servos_are_awake_does_not_clear_the_count_of_resets() {
 }
 
 #[test]
-fn brown_outs_half_a_minute_apart_do_not_count_as_in_a_row() {
+fn brown_outs_half_a_minute_apart_do_not_count_as_consecutive() {
     let mut dialogue = wake_odd_robot();
     for _ in 0..6 {
         dialogue.reset(Cause::BrownOut);

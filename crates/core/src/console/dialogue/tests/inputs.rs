@@ -11,8 +11,8 @@ const WAIT: u8 = Step::WAIT;
 const UNTIL: u8 = Step::UNTIL;
 const ENDLESS: u16 = Step::ENDLESS;
 
-/// The steps of a patrol, each a kind, a gait or an input, and a count: wait for the button, walk to a wall, walk back,
-/// turn.
+/// The steps of a patrol: wait for the button, walk to a wall, walk back, turn. A step has a kind, a gait or an input,
+/// and a count.
 const PATROL_STEPS: [(u8, &str, u16); 6] = [
     (UNTIL, "button", 0),
     (WAIT, "stand", ENDLESS),
@@ -28,7 +28,7 @@ const DEBOUNCE_FRAMES: u32 = 3;
 /// More frames than any step with an end takes in these tests.
 const LONG_FRAMES: u32 = 600;
 
-/// A robot that carries out these steps this many times.
+/// Starts a robot on a routine of these steps, repeated this many times.
 fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
     let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", rounds, steps));
     dialogue.expect_accepted("patrol");
@@ -49,7 +49,7 @@ fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     lines
 }
 
-/// The name of the running gait; if none runs, that of the activity.
+/// Returns the name of the running gait; if none runs, that of the activity.
 fn activity_name(dialogue: &Dialogue) -> String {
     match dialogue.motion().activity() {
         Activity::Gait(id) => dialogue
@@ -264,7 +264,7 @@ fn a_wait_brakes_the_gait_before_it_and_moves_no_servo_faster_than_the_gait() {
     );
 }
 
-/// Two robots on patrol: the first waits for the button, the second walks until the nose switch closes.
+/// Returns two robots on patrol: the first waits for the button, the second walks until the nose switch closes.
 fn start_waiting() -> [Dialogue; 2] {
     let mut button_dialogue = start_patrol(0, &PATROL_STEPS);
     button_dialogue.run_frames(100);
@@ -334,7 +334,7 @@ fn on_a_low_supply_the_contact_still_ends_the_walk() {
 }
 
 #[test]
-fn a_routine_begun_by_boot_waits_for_its_contacts_without_limit_despite_deadman() {
+fn a_routine_started_by_boot_waits_for_its_contacts_without_limit_despite_deadman() {
     let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &PATROL_STEPS));
     for line in ["boot patrol", "deadman 200", "save"] {
         dialogue.expect_accepted(line);
@@ -354,7 +354,7 @@ fn a_routine_begun_by_boot_waits_for_its_contacts_without_limit_despite_deadman(
 }
 
 #[test]
-fn a_pin_gets_its_pull_up_when_it_is_first_waited_for() {
+fn a_pin_gets_its_pull_up_when_its_contact_is_first_waited_for() {
     let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL_STEPS));
     assert_eq!(dialogue.board.pulled_up_pins, 0);
     dialogue.expect_accepted("patrol");

@@ -1,6 +1,6 @@
-//! EEPROM writes: their content, their timing, and the record of a rest.
+//! EEPROM writes: their content, their timing, and the record of the rest pose.
 //!
-//! Byte 128 of the EEPROM marks this record: it is 0xa5 while a pose is recorded, and 0xff otherwise.
+//! Byte 128 of the EEPROM marks this record: the byte is 0xa5 while a pose is recorded, and 0xff otherwise.
 
 use super::*;
 
@@ -29,7 +29,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     assert_eq!(
         restarted_dialogue.board.memory.bytes()[128],
         0xff,
-        "the pose is forgotten once the robot stands"
+        "the pose is erased once the robot stands"
     );
     restarted_dialogue.send_line("rest");
     restarted_dialogue.run_frames(10);
@@ -49,7 +49,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     assert_eq!(
         restarted_dialogue.board.memory.bytes()[128],
         0xff,
-        "the pose is forgotten once the supply is good"
+        "the pose is erased once the supply is good"
     );
 }
 
@@ -142,7 +142,7 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
     }
     restarted_dialogue.run_frames(200);
     assert_eq!(restarted_dialogue.status_value("pose"), neutral_pose_text());
-    // A robot that has moved no longer keeps the pose of its rest.
+    // The rest pose of a robot that has moved since is no longer recorded.
     let moved_dialogue = Dialogue::with_memory(
         *Sample::odd(),
         restarted_dialogue.board.memory.clone(),
@@ -152,7 +152,7 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
 }
 
 #[test]
-fn the_pose_of_a_rest_is_forgotten_before_the_first_pulse() {
+fn the_rest_pose_is_erased_before_the_first_pulse() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("rest");
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);

@@ -7,7 +7,7 @@ const CYCLES: u8 = Step::CYCLES;
 const FRAMES: u8 = Step::FRAMES;
 const REST: u8 = Step::REST;
 
-/// Steps, each a kind, a gait and a count of cycles or frames; two in a row are of `sway`.
+/// Steps, each a kind, a gait and a count of cycles or frames; the gait of two consecutive steps is `sway`.
 const PATROL_STEPS: [(u8, &str, u16); 5] = [
     (FRAMES, "stand", 30),
     (CYCLES, "sway", 2),
@@ -19,7 +19,7 @@ const PATROL_STEPS: [(u8, &str, u16); 5] = [
 /// More frames than a round of the routine takes.
 const LONG_FRAMES: u32 = 1_500;
 
-/// The odd robot with the routine `patrol`, which repeats its steps this many times; without end if `rounds` is 0.
+/// Returns the odd robot with the routine `patrol`, which repeats its steps `rounds` times, or endlessly if that is 0.
 fn robot_with_routine(rounds: u16) -> Sample {
     Sample::odd().with_routine("patrol", rounds, &PATROL_STEPS)
 }
@@ -61,7 +61,7 @@ fn record_snapshots(make_robot: fn() -> Sample) -> Vec<Dialogue> {
 }
 
 #[test]
-fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
+fn a_routine_goes_through_its_steps_and_reports_once_that_it_is_done() {
     for rounds in [1, 2, 3] {
         let mut dialogue = wake_robot(robot_with_routine(rounds));
         assert_eq!(dialogue.send_line("Patrol"), "ok patrol");
@@ -79,7 +79,7 @@ fn a_routine_goes_through_its_steps_and_says_once_that_it_is_done() {
 }
 
 #[test]
-fn a_count_sets_the_number_of_rounds_without_which_an_endless_routine_goes_on() {
+fn a_count_sets_the_number_of_rounds_of_a_routine_that_is_otherwise_endless() {
     let mut counted_dialogue = wake_robot(robot_with_routine(0));
     counted_dialogue.send_line("patrol 2");
     let (gaits, printed_lines) = run_recording_gaits(&mut counted_dialogue, 3 * LONG_FRAMES);
@@ -174,8 +174,11 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
             let mut reset_dialogue = snapshot.clone();
             reset_dialogue.reset(cause);
             let (gaits, printed_lines) = run_recording_gaits(&mut reset_dialogue, 400);
-            let is_still = ["stand", "Stop"].contains(&gaits[0].as_str());
-            assert!(is_still && gaits.len() == 1, "{cause:?}: {gaits:?}");
+            let is_standing_or_stopped = ["stand", "Stop"].contains(&gaits[0].as_str());
+            assert!(
+                is_standing_or_stopped && gaits.len() == 1,
+                "{cause:?}: {gaits:?}"
+            );
             assert!(!printed_lines.contains(&"# done".to_string()));
         }
     }

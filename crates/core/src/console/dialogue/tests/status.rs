@@ -47,7 +47,7 @@ fn a_voltage_is_left_out_until_it_is_measured() {
 }
 
 #[test]
-fn status_names_what_the_robot_does() {
+fn status_names_the_robots_activity() {
     let mut dialogue = wake_odd_robot();
     assert_eq!(dialogue.status_value("gait"), "stand");
     for (command, name) in [
@@ -116,7 +116,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
 }
 
 #[test]
-fn watch_goes_on_at_rest_and_a_new_watch_begins_its_own_interval() {
+fn watch_continues_at_rest_and_a_new_watch_starts_its_own_interval() {
     let mut dialogue = wake_odd_robot();
     dialogue.send_line("watch 5");
     dialogue.send_line("rest");

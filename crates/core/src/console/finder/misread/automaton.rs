@@ -42,7 +42,7 @@ impl LineAutomaton {
     /// The state at the start of a line.
     pub const START: usize = 0;
 
-    /// An automaton with only the start state.
+    /// Creates an automaton with only the start state.
     pub fn new() -> Self {
         let mut automaton = Self::default();
         automaton.add_state();
@@ -99,7 +99,7 @@ impl LineAutomaton {
         end_states
     }
 
-    /// The only state that leads to this one; the start if none does, `None` if several do.
+    /// Returns the only state that leads to this one; the start state if none does, `None` if several do.
     pub fn previous_state(&self, state: usize) -> Option<usize> {
         let leads_to_state = |from: &usize| self.transitions[*from].values().any(|to| *to == state);
         let mut previous_states = (0..self.transitions.len()).filter(leads_to_state);
@@ -107,7 +107,7 @@ impl LineAutomaton {
         previous_states.next().is_none().then_some(first_state)
     }
 
-    /// An automaton of all commands, as programs and people write them.
+    /// Creates an automaton of all commands, as programs and people write them.
     pub fn all_commands() -> Self {
         let mut automaton = Self::new();
         for gait in &*GAIT_NAMES {
@@ -147,7 +147,8 @@ impl LineAutomaton {
         automaton
     }
 
-    /// An automaton of a superset of the lines that the parser accepts: arguments may have any length and number.
+    /// Creates an automaton of a superset of the lines that the parser accepts: there may be any number of arguments, of
+    /// any length.
     pub fn accepted_lines() -> Self {
         let mut automaton = Self::new();
         for word in GAIT_NAMES
