@@ -3,7 +3,7 @@ import type { Remote } from 'comlink';
 
 import { files } from './files';
 import { Helper } from './helper';
-import { LatestQuestion } from './latest';
+import { LatestQuestion } from './latest-question';
 import type { RobotFunctions } from './robot-worker';
 
 /** Starts a worker that has a robot of its own. */

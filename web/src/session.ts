@@ -4,7 +4,7 @@ import { batch } from '@preact/signals-core';
 
 import { loadBoard } from './board';
 import { files } from './files';
-import { type SavedChanges, browserStorage } from './kept';
+import { type SavedChanges, browserStorage } from './browser-storage';
 import { BootLine } from './link/boot-line';
 import { Deadman } from './link/deadman';
 import { type Answer, Dialogue, DroppedQuestion, BANNER_PREFIX } from './link/dialogue';
@@ -15,7 +15,7 @@ import type { Banner, Description, Floor, Four, Frame, Predictions, Refused, Rob
 import { type BoardBanner, FULL_PACE, SessionState } from './session-state';
 import { type Cause, messageOf } from './trouble';
 import { SimulatedBoard } from './uno/board';
-import { type CycleDisplacement, WalkedPath } from './walked';
+import { type CycleDisplacement, WalkedPath } from './walked-path';
 import { DONE_LINE, GAITS, WORDS } from './words';
 
 /** Number of frames of 20 ms from one reported pose of a board to the next; a radio at 9600 baud carries no more. */

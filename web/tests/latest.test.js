@@ -4,7 +4,7 @@ import { test } from 'node:test';
 
 import { importSource } from './source.js';
 
-const { LatestQuestion } = await importSource('latest.ts');
+const { LatestQuestion } = await importSource('latest-question.ts');
 
 /** A worker that answers when a test says so. */
 class FakeWorker {

@@ -1,7 +1,7 @@
 // Drives gaits one after another in front of a camera, keeps the robot near the sheet of tags, and records the time
 // of each walk. Any other activity of the robot ends the protocol: `stop`, another gait, a lost link.
 import { DONE_LINE, GAITS, WORDS } from '../words';
-import type { OffsetToMiddle } from './seen';
+import type { OffsetToMiddle } from './tag-tracker';
 
 /**
  * Limits of a return by a gait: cycles per attempt, attempts, and the least share of the distance that must lie ahead

@@ -3,7 +3,7 @@
 import { effect } from '@preact/signals-core';
 
 import { files } from '../files';
-import { browserStorage } from '../kept';
+import { browserStorage } from '../browser-storage';
 import { isRefused, Robot } from '../robot';
 import type { Session } from '../session';
 import { robotName } from './setup/board';

@@ -1,5 +1,5 @@
 // The gait editor: a circle stands for the cycle, and a bar on it for the stance of each leg.
-import { browserStorage } from '../kept';
+import { browserStorage } from '../browser-storage';
 import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';

@@ -6,7 +6,7 @@ import type { AskedWalk } from '../../generated/measure';
 import { files } from '../files';
 import { Helper } from '../helper';
 import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
-import { TagTracker } from '../measure/seen';
+import { TagTracker } from '../measure/tag-tracker';
 import { PictureSource } from '../measure/source';
 import type { FilmFunctions } from '../measure/worker';
 import type { Predictor } from '../predictor';
@@ -17,10 +17,10 @@ import { WORDS } from '../words';
 import { element, setText } from './canvas';
 import { saveFile } from './download';
 import { make } from './make';
-import { ResultsView } from './measured';
+import { ResultsView } from './results';
 import { setUpNumberInput, putNumber, type Range } from './number';
 import { ROOM_OPENED } from './rooms';
-import { drawTracking } from './sight';
+import { drawTracking } from './draw-tracking';
 
 /** Least displacement per cycle of a gait that is ticked by default. */
 const MIN_DISPLACEMENT = { forwardMm: 3, turnDeg: 2 };

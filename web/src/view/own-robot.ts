@@ -1,5 +1,5 @@
 // The user's own robots: opening a link or another robot puts the changed one aside, and never erases it.
-import { browserStorage, type SavedChanges } from '../kept';
+import { browserStorage, type SavedChanges } from '../browser-storage';
 import type { Session } from '../session';
 import type { Troubles } from './troubles';
 

@@ -1,6 +1,6 @@
 // The trial of an edited gait by a simulation: its figures, the nearest valid values if it is refused, and the buttons
 // that use the gait.
-import { takeGait, tryGait } from '../gaits/try';
+import { takeGait, tryGait } from '../gaits/try-gait';
 import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
 import { robotQuestion } from '../robot-helper';
 import type { Session } from '../session';

@@ -1,6 +1,6 @@
 // The overlay on the camera's picture: the tags, and the robot's path and heading.
 import type { Pixel } from '../../generated/measure';
-import type { TagTracker } from '../measure/seen';
+import type { TagTracker } from '../measure/tag-tracker';
 import { surface } from './canvas';
 import { palette } from './palette';
 

@@ -1,6 +1,6 @@
 // The panel that records runs, saves pictures and films, and lets a second robot walk beside the first.
 import { Companion } from '../companion';
-import { restartWithGait } from '../gaits/try';
+import { restartWithGait } from '../gaits/try-gait';
 import { MAX_SECONDS, Recording } from '../recording';
 import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';
