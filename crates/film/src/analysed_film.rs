@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::cycles::{self, Cycles};
 use crate::frame::Frame;
 use crate::gait::Gait;
-use crate::likeness::{self, Likeness};
+use crate::likeness::{self, GaitMatch};
 use crate::measured_gait::MeasuredGait;
 use crate::path::{PathPoint, unwrap_headings};
 use crate::scene::Scene;
@@ -51,7 +51,7 @@ pub struct AnalysedFilm {
 }
 
 impl AnalysedFilm {
-    /// Makes an analysed film; `frames` has a frame for each place of the path.
+    /// Creates an analysed film; `frames` has one frame for each point of the path.
     pub(crate) fn new(
         path: Vec<PathPoint>,
         camera: CameraEstimate,
@@ -79,18 +79,17 @@ impl AnalysedFilm {
     ) -> Result<MeasuredGait, Trouble> {
         let path = self.path_between(interval);
         let cycles = cycles::find_cycles(path, gait)?;
-        let variances = self.scene_variances(&cycles);
         // A deck tag that is higher than given seems to move farther.
         let scale_error =
             (HEIGHT_SIGMA / (self.camera.height - self.given_deck_height)).hypot(RULER_SIGMA);
         let deviations = cycle_path::compute_deviations(path, &cycles, gait);
         let walk = Walk {
+            scene_variances: self.scene_variances(&cycles),
             cycles,
-            scene_variances: variances,
             scale_error,
             deviations,
         };
-        Ok(MeasuredGait::of(vec![walk], gait))
+        Ok(MeasuredGait::from_walks(vec![walk], gait))
     }
 
     /// The walks, each as the times of its beginning and its end, s, extended at both ends by half of `shortest_rest`.
@@ -100,9 +99,9 @@ impl AnalysedFilm {
         walks::find_walks(&self.path, shortest_rest)
     }
 
-    /// The gait, of those given, that the robot's path between two times, s, resembles.
-    pub fn likeness(&self, gaits: &[Gait], interval: [f64; 2]) -> Likeness {
-        likeness::find_likeness(self.path_between(Some(interval)), gaits)
+    /// Finds which of the gaits the robot's path between two times, s, shows.
+    pub fn match_gait(&self, gaits: &[Gait], interval: [f64; 2]) -> GaitMatch {
+        likeness::match_gait(self.path_between(Some(interval)), gaits)
     }
 
     /// The camera in each picture of the path.

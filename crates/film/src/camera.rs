@@ -17,7 +17,7 @@ pub(crate) type Pose = [f64; 6];
 pub(crate) struct Camera {
     /// Focal length, px.
     focal_length: f64,
-    /// The point of the picture to which the camera's axis points.
+    /// The point of the picture that the camera's axis passes through.
     principal_point: Pixel,
     /// Rotation from the floor's axes to the camera's.
     rotation: Matrix3<f64>,
@@ -26,7 +26,7 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// Makes a camera from its focal length, px, the width and height of its pictures, px, and its pose.
+    /// Creates a camera from its focal length, px, the width and height of its pictures, px, and its pose.
     pub(crate) fn new(focal_length: f64, picture_size: [usize; 2], pose: &[f64]) -> Self {
         Self {
             focal_length,
@@ -88,12 +88,12 @@ pub(crate) fn pose_from_homography(
     let y = second * scale;
     let y = (y - x * x.dot(&y)).normalize();
     let rotation = Matrix3::from_columns(&[x, y, x.cross(&y)]);
-    let turn = Rotation3::from_matrix_unchecked(rotation).scaled_axis();
+    let rotation_vector = Rotation3::from_matrix_unchecked(rotation).scaled_axis();
     let translation = third * scale;
     let pose = [
-        turn.x,
-        turn.y,
-        turn.z,
+        rotation_vector.x,
+        rotation_vector.y,
+        rotation_vector.z,
         translation.x,
         translation.y,
         translation.z,

@@ -1,9 +1,10 @@
-//! The beginning and the duration of a cycle, found from the movement within it.
+//! The start and the duration of a cycle, found from the movement within it.
 //!
-//! The movement over a part of a cycle must fit the predicted one. Only its variation counts, because its mean is what
-//! the film has to show. If the movement fits much better to cycles that take twice as long or more, the robot
-//! was driven at another pace, or the film is in slow motion.
+//! The movement over a part of a cycle must fit the predicted one. Only its variation counts, because its mean is the
+//! quantity to be measured. If the movement fits cycles that take twice as long or longer much better, the robot was
+//! driven at another pace, or the film is in slow motion.
 
+use crate::figure::Figure;
 use crate::gait::{Gait, movement_in_mm, movement_length};
 use crate::least_squares;
 use crate::path::{self, PathPoint};
@@ -22,8 +23,8 @@ const MAX_RATE_ERROR: f64 = 0.08;
 const SEARCH_STEP: f64 = 0.005;
 /// Standard deviation of a duration found by that search, as a share.
 const SEARCH_SIGMA: f64 = 0.01;
-/// Number of cycle beginnings that are tried.
-const BEGINNING_COUNT: usize = 48;
+/// Number of cycle starts that are tried.
+const START_COUNT: usize = 48;
 /// Largest squared difference between measured and predicted movements at which the gait is accepted, as a share of
 /// the sum of the squares of both.
 const MAX_MISFIT_SHARE: f64 = 0.5;
@@ -37,13 +38,13 @@ const PERIOD_MULTIPLES: [u32; 3] = [2, 4, 8];
 /// squares of the measured movements.
 const MAX_MISFIT_RATIO: f64 = 0.3;
 
-/// The timing of a walk's cycles. Each pair is a value and its standard error, s.
+/// The timing of a walk's cycles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clock {
-    /// The beginning of a cycle.
-    pub start: [f64; 2],
-    /// The duration of a cycle.
-    pub period: [f64; 2],
+    /// The start of a cycle, s.
+    pub start: Figure,
+    /// The duration of a cycle, s.
+    pub period: Figure,
 }
 
 /// The robot's movements over a fixed part of a cycle, one movement from each picture.
@@ -77,7 +78,7 @@ impl Movements {
         self.movements.len() < MIN_MOVEMENTS
     }
 
-    /// Finds the beginning and the duration of a cycle.
+    /// Finds the start and the duration of a cycle.
     ///
     /// # Errors
     /// Fails if the movement shows another gait or pace.
@@ -85,13 +86,14 @@ impl Movements {
         let periods = likely_periods(gait);
         let centred_misfit =
             |start: f64, period: f64| squared_norm(&self.centred_residuals(gait, start, period));
-        let (mut least_misfit, mut start, mut period) =
+        let (mut min_misfit, mut start, mut period) =
             self.minimise(gait.period, &periods, centred_misfit);
         let (mut expected_period, mut relative_sigma) = (gait.period, PERIOD_SIGMA);
         // If the picture rate is wrong, only the path itself gives the duration of a cycle.
-        let wide_fit = self.minimise(gait.period, &wide_periods(gait), centred_misfit);
-        if wide_fit.0 < MAX_MISFIT_RATIO * least_misfit {
-            (least_misfit, start, period) = wide_fit;
+        let (wide_misfit, wide_start, wide_period) =
+            self.minimise(gait.period, &wide_periods(gait), centred_misfit);
+        if wide_misfit < MAX_MISFIT_RATIO * min_misfit {
+            (min_misfit, start, period) = (wide_misfit, wide_start, wide_period);
             (expected_period, relative_sigma) = (period, SEARCH_SIGMA);
         }
         let misfit = squared_norm(&self.residuals(gait, start, period));
@@ -109,7 +111,7 @@ impl Movements {
                 period: gait.period,
             });
         }
-        let sigma = (least_misfit / (3 * self.movements.len()) as f64)
+        let sigma = (min_misfit / (3 * self.movements.len()) as f64)
             .sqrt()
             .max(1e-3);
         let model = |parameters: &[f64]| {
@@ -122,12 +124,24 @@ impl Movements {
         };
         Ok(match least_squares::fit(&[start, period], model) {
             Some(fit) => Clock {
-                start: [fit.parameters[0], fit.covariance[(0, 0)].sqrt()],
-                period: [fit.parameters[1], fit.covariance[(1, 1)].sqrt()],
+                start: Figure {
+                    value: fit.parameters[0],
+                    error: fit.covariance[(0, 0)].sqrt(),
+                },
+                period: Figure {
+                    value: fit.parameters[1],
+                    error: fit.covariance[(1, 1)].sqrt(),
+                },
             },
             None => Clock {
-                start: [start, gait.period / BEGINNING_COUNT as f64],
-                period: [period, relative_sigma * period],
+                start: Figure {
+                    value: start,
+                    error: gait.period / START_COUNT as f64,
+                },
+                period: Figure {
+                    value: period,
+                    error: relative_sigma * period,
+                },
             },
         })
     }
@@ -142,8 +156,8 @@ impl Movements {
             / self.sum_of_squares()
     }
 
-    /// The misfit of a gait whose cycles take a multiple of their usual duration, and that multiple: those of the
-    /// multiple that fits best.
+    /// The misfit of a gait whose cycles take a multiple of their usual duration, for the multiple that fits best, and
+    /// that multiple.
     pub(crate) fn misfit_at_best_multiple(&self, gait: &Gait) -> (f64, u32) {
         let misfit_of =
             |start: f64, period: f64| squared_norm(&self.residuals(gait, start, period));
@@ -166,16 +180,16 @@ impl Movements {
             .sum()
     }
 
-    /// Finds the first cycle whose movement differs from that of the next cycle, and returns its beginning, s; `None`
-    /// if all cycles are alike.
+    /// Finds the first cycle whose movement differs from that of the next cycle, and returns its start, s; `None` if
+    /// all cycles are alike.
     pub(crate) fn find_change(&self, period: f64) -> Option<f64> {
         let first = self.movements.first()?.0;
         let last = self.movements.last()?.0;
         let cycles = ((last - first) / period) as usize;
-        let beginnings = (1..cycles).map(|i| first + (i - 1) as f64 * period);
-        beginnings.into_iter().find(|beginning| {
+        let mut starts = (1..cycles).map(|i| first + (i - 1) as f64 * period);
+        starts.find(|start| {
             let is_in_cycle =
-                |(time, _): &&(f64, [f64; 3])| (*beginning..beginning + period).contains(time);
+                |(time, _): &&(f64, [f64; 3])| (*start..start + period).contains(time);
             let (mut difference, mut mean_squares) = (0.0, 0.0);
             for (time, movement) in self.movements.iter().filter(is_in_cycle) {
                 if let Some(next_movement) = self.movement_at(time + period) {
@@ -212,8 +226,8 @@ impl Movements {
         let middle_cycle =
             ((self.movements[self.movements.len() / 2].0 - first_time) / period).floor();
         let mut best = (f64::INFINITY, first_time, period);
-        for i in 0..BEGINNING_COUNT {
-            let start = first_time + period * i as f64 / BEGINNING_COUNT as f64;
+        for i in 0..START_COUNT {
+            let start = first_time + period * i as f64 / START_COUNT as f64;
             for &tried_period in periods {
                 // The start moves with the duration, so that the phase in the middle of the film stays the same.
                 let start = start + middle_cycle * (period - tried_period);

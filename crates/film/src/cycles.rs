@@ -1,14 +1,15 @@
 //! The cycles of a path.
 //!
-//! A distance per cycle means little without the phase at which a cycle begins: the body sways, so the forward
+//! A distance per cycle means little without the phase at which a cycle starts: the body sways, so the forward
 //! direction depends on the phase. And a clock that is off by half a percent makes every cycle too long by as much.
 //! So both are fitted (`clock.rs`). Since pictures are some time apart, cycles are measured from one calm phase, at
-//! which the robot moves evenly, to the next. The displacement from the beginning of a cycle to its calm phase then
-//! converts the result to one that is measured from the beginning.
+//! which the robot moves evenly, to the next. The displacement from the start of a cycle to its calm phase then converts
+//! the result to one that is measured from the start.
 
 use lizard_contact::{Place, Travel};
 
 use crate::clock::{Clock, Movements};
+use crate::figure::Figure;
 use crate::gait::{Gait, HALF_WINDOW, MIN_MOVEMENT, movement_in_mm, movement_length};
 use crate::path::{self, PathPoint};
 use crate::trouble::Trouble;
@@ -26,18 +27,18 @@ const MARGIN_CYCLES: f64 = 0.15;
 /// The cycles of a path.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cycles {
-    /// Duration of a cycle, s, and its standard error.
-    pub period: [f64; 2],
+    /// Duration of a cycle, s.
+    pub period: Figure,
     /// The predicted rate of movement at the calm phase, per cycle: mm, mm, deg.
     pub calm_rate: [f64; 3],
     /// The times of the calm phases that separate the cycles, s.
     pub calm_times: Vec<f64>,
     /// The movement of each cycle.
     pub travels: Vec<Travel>,
-    /// Time and place of the beginning of each cycle, and of the end of the last one.
-    pub beginnings: Vec<PathPoint>,
-    /// Standard error of the times in `beginnings`, s.
-    pub beginning_error: f64,
+    /// Time and place of the start of each cycle, and of the end of the last one.
+    pub starts: Vec<PathPoint>,
+    /// Standard error of the times in `starts`, s.
+    pub start_error: f64,
 }
 
 /// Finds the cycles of a path.
@@ -48,18 +49,15 @@ pub(crate) struct Cycles {
 pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Trouble> {
     let (walk, [begin, end]) = select_even_walk(path, gait)?;
     let movements = Movements::from_path(walk, gait.period);
-    let Clock {
-        start: [start, beginning_error],
-        period,
-    } = movements.fit_clock(gait)?;
-    if let Some(seconds) = movements.find_change(period[0]) {
+    let Clock { start, period } = movements.fit_clock(gait)?;
+    if let Some(seconds) = movements.find_change(period.value) {
         let seconds = seconds - path[0].seconds;
         return Err(Trouble::MovementChanges { seconds });
     }
     let calm_phase = gait.calm_phase();
     // The times of the calm phases within the walk.
-    let first = ((begin - start) / period[0] - calm_phase).ceil() as i64;
-    let times = (first..).map(|i| start + (i as f64 + calm_phase) * period[0]);
+    let first = ((begin - start.value) / period.value - calm_phase).ceil() as i64;
+    let times = (first..).map(|i| start.value + (i as f64 + calm_phase) * period.value);
     let half_window = HALF_WINDOW * gait.period;
     let calm_places: Vec<(f64, Place)> = times
         .take_while(|&time| time <= end)
@@ -71,15 +69,15 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Tro
     if calm_places.len() < 3 {
         return Err(too_short_error(end - begin, gait));
     }
-    let start_to_calm = displacement_to_calm(walk, &calm_places, calm_phase, period[0], gait)
+    let start_to_calm = displacement_to_calm(walk, &calm_places, calm_phase, period.value, gait)
         .unwrap_or_else(|| gait.place_at(calm_phase));
     let calm_to_start = path::inverse(start_to_calm);
     let travel_of = |pair: &[(f64, Place)]| {
         let cycle = path::place_of_travel(pair[1].1.travel_from(pair[0].1));
         path::compose(path::compose(start_to_calm, cycle), calm_to_start).travel()
     };
-    let beginning_of = |(time, place): &(f64, Place)| PathPoint {
-        seconds: time - calm_phase * period[0],
+    let start_of = |(time, place): &(f64, Place)| PathPoint {
+        seconds: time - calm_phase * period.value,
         place: path::compose(*place, calm_to_start),
     };
     Ok(Cycles {
@@ -87,8 +85,8 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Tro
         calm_rate: gait.rate_at(calm_phase),
         calm_times: calm_places.iter().map(|(time, _)| *time).collect(),
         travels: calm_places.windows(2).map(travel_of).collect(),
-        beginnings: calm_places.iter().map(beginning_of).collect(),
-        beginning_error,
+        starts: calm_places.iter().map(start_of).collect(),
+        start_error: start.error,
     })
 }
 
@@ -101,8 +99,7 @@ pub(crate) fn compute_movements(path: &[PathPoint], gait: &Gait) -> Result<Movem
     ))
 }
 
-/// Selects the part of a path on which the robot walks evenly; returns it with the times of its beginning and end,
-/// s.
+/// Selects the part of a path on which the robot walks evenly; returns it with the times of its start and end, s.
 fn select_even_walk<'a>(
     path: &'a [PathPoint],
     gait: &Gait,
@@ -124,8 +121,8 @@ fn too_short_error(seconds: f64, gait: &Gait) -> Trouble {
     }
 }
 
-/// The mean displacement from the beginning of a cycle to its calm phase; `None` if no cycle has pictures before
-/// and after its beginning.
+/// The mean displacement from the start of a cycle to its calm phase; `None` if no cycle has pictures before and after
+/// its start.
 fn displacement_to_calm(
     path: &[PathPoint],
     calm_places: &[(f64, Place)],
@@ -136,8 +133,8 @@ fn displacement_to_calm(
     let displacements: Vec<Place> = calm_places
         .iter()
         .filter_map(|(time, place)| {
-            let begin = place_at_beginning(path, time - calm_phase * period, period, gait)?;
-            Some(path::place_of_travel(place.travel_from(begin)))
+            let start = place_at_start(path, time - calm_phase * period, period, gait)?;
+            Some(path::place_of_travel(place.travel_from(start)))
         })
         .collect();
     let mean_coordinate = |coordinate: fn(&Place) -> f64| {
@@ -150,23 +147,23 @@ fn displacement_to_calm(
     })
 }
 
-/// The place at the beginning of a cycle: the places in the pictures before and after it are moved to it by the
-/// predicted movement, then interpolated. Without the prediction, interpolation would be wrong for a gait that
-/// begins with a jerk. `None` if there is no picture before or after.
-fn place_at_beginning(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
+/// The place at the start of a cycle: the places in the pictures before and after it are shifted to that time by the
+/// predicted movement, then interpolated. Without the prediction, interpolation would be wrong for a gait that starts
+/// with a jerk. `None` unless there is a picture both before and after.
+fn place_at_start(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
     let next_index = path.partition_point(|point| point.seconds < seconds);
     let (a, b) = (path.get(next_index.checked_sub(1)?)?, path.get(next_index)?);
-    let moved_place = |point: &PathPoint| {
+    let shifted_place = |point: &PathPoint| {
         let phase = 1.0 + (point.seconds - seconds) / period;
         let displacement =
             path::place_of_travel(gait.place_at(phase).travel_from(gait.place_at(1.0)));
         path::compose(point.place, path::inverse(displacement))
     };
     let share = (seconds - a.seconds) / (b.seconds - a.seconds);
-    Some(path::interpolate(moved_place(a), moved_place(b), share))
+    Some(path::interpolate(shifted_place(a), shifted_place(b), share))
 }
 
-/// Finds the beginning and the end of the time in which the robot walks evenly, s.
+/// Finds the start and the end of the time in which the robot walks evenly, s.
 fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> {
     let travels: Vec<(f64, Travel)> = path
         .iter()

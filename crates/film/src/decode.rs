@@ -10,7 +10,7 @@ use crate::Picture;
 use crate::picture::luminance;
 
 impl Picture {
-    /// Makes a grey picture from the bytes of a PNG or JPEG file.
+    /// Decodes the bytes of a PNG or JPEG file to a grey picture.
     ///
     /// # Errors
     /// Returns the reason if the bytes are not such a file.

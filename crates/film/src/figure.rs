@@ -5,13 +5,13 @@
 pub struct Figure {
     /// The measured value.
     pub value: f64,
-    /// Its standard error: the true value is within two errors with a probability of 95 %.
+    /// Its standard error: the true value is within two standard errors with a probability of 95 %.
     pub error: f64,
 }
 
 impl Figure {
-    /// True if `value` is more than two errors below this figure.
-    pub fn is_above(&self, value: f64) -> bool {
+    /// True if this figure exceeds `value` by more than two standard errors.
+    pub fn is_significantly_above(&self, value: f64) -> bool {
         self.value - value > 2.0 * self.error
     }
 }

@@ -6,7 +6,7 @@ use crate::gait::Gait;
 use crate::measured_gait::MeasuredGait;
 use crate::path::{PathPoint, unwrap_headings};
 use crate::picture::{Picture, Pixel};
-use crate::scene::{FloorCorners, Measures, Scene, View};
+use crate::scene::{Dimensions, FloorCorners, Scene, View};
 use crate::sheet::{CODES, DECK_TAG_ID, FLOOR_TAG_COUNT};
 use crate::tags::{self, Tag};
 use crate::trouble::Trouble;
@@ -27,7 +27,7 @@ const MAX_HEIGHT_ERROR: f64 = 12.0;
 /// later.
 const FULL_SEARCH_INTERVAL: usize = 16;
 
-/// Measures of the sheet and the robot.
+/// Dimensions of the sheet and the robot, as the user measured them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
     /// True length of a printed mm, mm: the measured length of the ruler divided by [`crate::sheet::RULER_LENGTH`].
@@ -119,12 +119,12 @@ impl Film {
     pub fn analyse(&self, setup: Setup) -> Result<AnalysedFilm, Trouble> {
         self.check_tags()?;
         let has_camera_moved = self.has_camera_moved();
-        let measures = Measures {
+        let dimensions = Dimensions {
             print_scale: setup.print_scale,
             deck_height: setup.deck_height,
             picture_size: self.picture_size,
         };
-        let scene = Scene::of(&self.select_views(has_camera_moved)?, measures)?;
+        let scene = Scene::fit(&self.select_views(has_camera_moved)?, dimensions)?;
         let mut frames = Vec::with_capacity(self.frames.len());
         let mut path: Vec<PathPoint> = Vec::with_capacity(self.frames.len());
         let mut heights = Vec::with_capacity(self.frames.len());
@@ -188,10 +188,10 @@ impl Film {
         if let Some(id) = (0..FLOOR_TAG_COUNT).find(|&id| count_of(id) == 0) {
             return Err(Trouble::NoFloorTag { id });
         }
-        let seen = count_of(DECK_TAG_ID);
-        if (seen as f64) < (1.0 - MAX_MISSING_SHARE) * pictures as f64 {
+        let visible_count = count_of(DECK_TAG_ID);
+        if (visible_count as f64) < (1.0 - MAX_MISSING_SHARE) * pictures as f64 {
             return Err(Trouble::DeckTagTooRare {
-                visible_count: seen,
+                visible_count,
                 pictures,
             });
         }
@@ -199,17 +199,17 @@ impl Film {
     }
 
     /// The usual corners of each floor tag: interquartile means over all pictures, since a tag that is partly covered
-    /// for a while seems to be elsewhere.
+    /// for a while seems displaced.
     fn usual_floor_corners(&self) -> FloorCorners {
         std::array::from_fn(|id| {
-            let tags_seen: Vec<_> = self
+            let visible_tags: Vec<_> = self
                 .frames
                 .iter()
                 .filter_map(|frame| frame.tags[id])
                 .collect();
             std::array::from_fn(|corner| {
                 [0, 1].map(|i| {
-                    interquartile_mean(tags_seen.iter().map(|tag| tag[corner][i]).collect())
+                    interquartile_mean(visible_tags.iter().map(|tag| tag[corner][i]).collect())
                 })
             })
         })
@@ -219,29 +219,29 @@ impl Film {
     /// positions. If only one tag is displaced, it is partly covered.
     fn has_camera_moved(&self) -> bool {
         let usual_corners = self.usual_floor_corners();
-        let is_elsewhere = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {
+        let is_displaced = |tag: &[Pixel; 4], usual: &[Pixel; 4]| {
             let pairs = tag.iter().zip(usual);
             pairs
                 .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
                 .any(|distance| distance > MIN_CAMERA_SHIFT)
         };
-        let is_frame_moved = |frame: &&Frame| {
+        let shows_camera_shift = |frame: &&Frame| {
             let tags = (0..FLOOR_TAG_COUNT).filter_map(|id| Some((id, frame.tags[id]?)));
-            tags.filter(|(id, tag)| is_elsewhere(tag, &usual_corners[*id]))
+            tags.filter(|(id, tag)| is_displaced(tag, &usual_corners[*id]))
                 .count()
                 > 1
         };
-        self.frames.iter().filter(is_frame_moved).count() > self.frames.len() / 50
+        self.frames.iter().filter(shows_camera_shift).count() > self.frames.len() / 50
     }
 
-    /// Selects the pictures from which the scene is found.
+    /// Selects the pictures to which the scene is fitted.
     fn select_views(&self, has_camera_moved: bool) -> Result<Vec<View>, Trouble> {
-        let complete_frames: Vec<(FloorCorners, [Pixel; 4])> = self
+        let complete_views: Vec<(FloorCorners, [Pixel; 4])> = self
             .frames
             .iter()
             .filter_map(|frame| Some((frame.floor_corners()?, frame.tags[DECK_TAG_ID]?)))
             .collect();
-        let spread_indices = |count: usize| {
+        let evenly_spaced_indices = |count: usize| {
             let sample_count = SAMPLE_COUNT.min(count).max(1);
             (0..sample_count)
                 .map(move |i| i * count.saturating_sub(1) / sample_count.saturating_sub(1).max(1))
@@ -254,7 +254,9 @@ impl Film {
                 .collect();
             return Ok(vec![View {
                 floor_corners: self.usual_floor_corners(),
-                deck_corners: spread_indices(decks.len()).map(|i| decks[i]).collect(),
+                deck_corners: evenly_spaced_indices(decks.len())
+                    .map(|i| decks[i])
+                    .collect(),
             }]);
         }
         let pictures = self
@@ -263,15 +265,17 @@ impl Film {
             .filter(|frame| frame.floor_corners().is_none())
             .count();
         if pictures as f64 > MAX_MISSING_SHARE * self.frames.len() as f64
-            || complete_frames.is_empty()
+            || complete_views.is_empty()
         {
             return Err(Trouble::CameraMoved { pictures });
         }
         let view_of = |i: usize| View {
-            floor_corners: complete_frames[i].0,
-            deck_corners: vec![complete_frames[i].1],
+            floor_corners: complete_views[i].0,
+            deck_corners: vec![complete_views[i].1],
         };
-        Ok(spread_indices(complete_frames.len()).map(view_of).collect())
+        Ok(evenly_spaced_indices(complete_views.len())
+            .map(view_of)
+            .collect())
     }
 
     /// Checks that the robot stays where the floor tags give valid places.

@@ -5,7 +5,7 @@ use lizard_contact::{Place, Travel};
 use crate::path;
 
 /// Distance of the robot's legs from its middle, mm; a turn of 1 rad counts as this distance.
-const TURN_ARM: f64 = 60.0;
+const TURN_LEVER_ARM: f64 = 60.0;
 /// Smallest movement per cycle with which a robot counts as moving, mm.
 pub(crate) const MIN_MOVEMENT: f64 = 3.0;
 /// Half of the time window whose pictures determine the place at a calm phase, as a share of a cycle.
@@ -69,7 +69,7 @@ impl Gait {
     pub(crate) fn rate_at(&self, phase: f64) -> [f64; 3] {
         let [forward, left, turn] =
             self.movement_between(phase - HALF_WINDOW / 2.0, phase + HALF_WINDOW / 2.0);
-        [forward, left, (turn / TURN_ARM).to_degrees()].map(|value| value / HALF_WINDOW)
+        [forward, left, (turn / TURN_LEVER_ARM).to_degrees()].map(|value| value / HALF_WINDOW)
     }
 
     /// The predicted movement from a phase to a later one, as [`movement_in_mm`] gives it.
@@ -82,12 +82,12 @@ impl Gait {
     }
 }
 
-/// A movement in mm: forward, left, and the turn times [`TURN_ARM`].
+/// A movement in mm: forward, left, and the turn times [`TURN_LEVER_ARM`].
 pub(crate) fn movement_in_mm(travel: Travel) -> [f64; 3] {
     [
         travel.forward,
         travel.left,
-        TURN_ARM * travel.turn.to_radians(),
+        TURN_LEVER_ARM * travel.turn.to_radians(),
     ]
 }
 

@@ -8,13 +8,13 @@ pub(crate) struct Homography(pub Matrix3<f64>);
 
 impl Homography {
     /// The map from four points to four others; `None` if they do not determine one.
-    pub(crate) fn of_four(from: [[f64; 2]; 4], to: [[f64; 2]; 4]) -> Option<Self> {
-        Self::of_points(&from, &to)
+    pub(crate) fn from_four_points(from: [[f64; 2]; 4], to: [[f64; 2]; 4]) -> Option<Self> {
+        Self::from_points(&from, &to)
     }
 
-    /// The map that fits four or more pairs of points, by least squares of their linear equations;
-    /// `None` if they do not determine one.
-    pub(crate) fn of_points(from: &[[f64; 2]], to: &[[f64; 2]]) -> Option<Self> {
+    /// The map that fits four or more pairs of points, by least squares of their linear equations; `None` if they do
+    /// not determine one.
+    pub(crate) fn from_points(from: &[[f64; 2]], to: &[[f64; 2]]) -> Option<Self> {
         let rows = 2 * from.len().min(to.len());
         let mut matrix = DMatrix::zeros(rows, 8);
         let mut right_side = DVector::zeros(rows);

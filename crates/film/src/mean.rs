@@ -1,8 +1,9 @@
 //! The mean of a film's cycles and its standard error.
 //!
 //! The cycles of a robot differ by more than the error of a tag's position, so the spread of the cycles gives the
-//! error of their mean. The spread of a few cycles is itself uncertain. Student's distribution tells how much the
-//! error has to be enlarged, so that the true value lies within two errors as often as for a film of many cycles.
+//! error of their mean. The spread of a few cycles is itself uncertain. Student's t distribution gives the factor by
+//! which the error has to be enlarged so that the true value lies within two standard errors as often as for a film of
+//! many cycles.
 //!
 //! Several walks of a gait may differ more from each other than the cycles of a walk do, since each starts at another
 //! place on the floor. Then the samples are the walks, not their cycles.
@@ -16,63 +17,72 @@ pub struct Mean {
     /// The mean, in the unit of the cycles' values.
     pub value: f64,
     /// Standard deviation of single cycles.
-    pub spread: f64,
+    pub standard_deviation: f64,
     /// Standard error of the mean: the true value is within twice this with a probability of 95 %.
-    pub error: f64,
-    /// The part of the error that more cycles do not reduce: that of camera, clock and ruler.
-    pub common_error: f64,
+    pub standard_error: f64,
+    /// The part of the standard error that more cycles do not reduce: that of camera, clock and ruler.
+    pub systematic_error: f64,
 }
 
-/// The values of a walk's cycles, and the part of their error that all cycles share.
-pub(crate) type WalkValues = (Vec<f64>, f64);
+/// The values of a walk's cycles.
+pub(crate) struct WalkValues {
+    /// The value of each cycle.
+    pub cycles: Vec<f64>,
+    /// The part of their error that all cycles share.
+    pub systematic_error: f64,
+}
 
 /// Computes the mean over walks of two cycles or more.
 pub(crate) fn mean_of_walks(walks: &[WalkValues]) -> Mean {
-    let cycle_count = walks.iter().map(|(cycles, _)| cycles.len()).sum::<usize>();
+    let cycle_count = walks.iter().map(|walk| walk.cycles.len()).sum::<usize>();
     let mean_of = |cycles: &[f64]| cycles.iter().sum::<f64>() / cycles.len() as f64;
     let weighted_mean = |value: &dyn Fn(&WalkValues) -> f64| {
-        let terms = walks.iter().map(|walk| walk.0.len() as f64 * value(walk));
+        let terms = walks
+            .iter()
+            .map(|walk| walk.cycles.len() as f64 * value(walk));
         terms.sum::<f64>() / cycle_count as f64
     };
-    let mean = weighted_mean(&|(cycles, _)| mean_of(cycles));
-    let squares_around = |cycles: &[f64], middle: f64| {
-        let squares = cycles.iter().map(|cycle| (cycle - middle).powi(2));
+    let mean = weighted_mean(&|walk| mean_of(&walk.cycles));
+    let sum_of_squares_about = |cycles: &[f64], centre: f64| {
+        let squares = cycles.iter().map(|cycle| (cycle - centre).powi(2));
         squares.sum::<f64>()
     };
-    let total_squares: f64 = walks
+    let total_sum_of_squares: f64 = walks
         .iter()
-        .map(|(cycles, _)| squares_around(cycles, mean))
+        .map(|walk| sum_of_squares_about(&walk.cycles, mean))
         .sum();
-    let squares_within: f64 = walks
+    let sum_of_squares_within: f64 = walks
         .iter()
-        .map(|(cycles, _)| squares_around(cycles, mean_of(cycles)))
+        .map(|walk| sum_of_squares_about(&walk.cycles, mean_of(&walk.cycles)))
         .sum();
     let degrees_of_freedom = cycle_count - walks.len();
-    let variance_within = squares_within / degrees_of_freedom as f64;
-    let variance_between =
-        (total_squares - squares_within) / walks.len().saturating_sub(1).max(1) as f64;
+    let variance_within = sum_of_squares_within / degrees_of_freedom as f64;
+    let variance_between = (total_sum_of_squares - sum_of_squares_within)
+        / walks.len().saturating_sub(1).max(1) as f64;
     let (variance, degrees_of_freedom) = match variance_between > variance_within {
         true => (variance_between, walks.len() - 1),
         false => (variance_within, degrees_of_freedom),
     };
-    let error = (variance / cycle_count as f64).sqrt() * small_sample_factor(degrees_of_freedom);
+    let random_error =
+        (variance / cycle_count as f64).sqrt() * small_sample_factor(degrees_of_freedom);
     // Camera, clock and ruler are nearly the same for all walks, so more walks do not reduce their error.
-    let common_error = weighted_mean(&|(_, walk_error)| *walk_error);
+    let systematic_error = weighted_mean(&|walk| walk.systematic_error);
     Mean {
         value: mean,
-        spread: (total_squares / (cycle_count - 1) as f64).sqrt(),
-        error: error.hypot(common_error),
-        common_error,
+        standard_deviation: (total_sum_of_squares / (cycle_count - 1) as f64).sqrt(),
+        standard_error: random_error.hypot(systematic_error),
+        systematic_error,
     }
 }
 
 /// The factor by which an error has to be enlarged if it was estimated with few degrees of freedom, so that the true
-/// value lies within two errors with a probability of 95 %.
+/// value lies within two standard errors with a probability of 95 %.
 pub(crate) fn small_sample_factor(degrees_of_freedom: usize) -> f64 {
     let (mut low, mut high) = (1.0, 100.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
-        *if student_probability(2.0 * middle, degrees_of_freedom) < PROBABILITY_WITHIN_TWO_SIGMAS {
+        *if student_t_probability(2.0 * middle, degrees_of_freedom) < PROBABILITY_WITHIN_TWO_SIGMAS
+        {
             &mut low
         } else {
             &mut high
@@ -81,8 +91,8 @@ pub(crate) fn small_sample_factor(degrees_of_freedom: usize) -> f64 {
     high
 }
 
-/// The probability that Student's variable lies between `-t` and `t`.
-fn student_probability(t: f64, degrees_of_freedom: usize) -> f64 {
+/// The probability that a t-distributed variable lies between `-t` and `t`.
+fn student_t_probability(t: f64, degrees_of_freedom: usize) -> f64 {
     let angle = (t / (degrees_of_freedom as f64).sqrt()).atan();
     let (sin, cos) = angle.sin_cos();
     // For a whole number of degrees of freedom, the probability is a finite series.
@@ -114,7 +124,7 @@ mod tests {
             (9, 2.262),
             (30, 2.042),
         ] {
-            let probability = student_probability(t, degrees_of_freedom);
+            let probability = student_t_probability(t, degrees_of_freedom);
             assert!(
                 (probability - 0.95).abs() < 1e-4,
                 "{degrees_of_freedom}: {probability}"
@@ -135,14 +145,18 @@ mod tests {
     }
 
     #[test]
-    fn the_truth_lies_within_two_errors_in_95_percent_of_films_of_three_to_ten_cycles() {
+    fn the_true_value_lies_within_two_standard_errors_in_95_percent_of_films_of_three_to_ten_cycles()
+     {
         let mut noise = noise_source();
         for cycle_count in [3, 5, 10] {
             let film_count = 4000;
             let hits = (0..film_count).filter(|_| {
                 let cycles: Vec<f64> = (0..cycle_count).map(|_| 3.0 + noise()).collect();
-                let mean = mean_of_walks(&[(cycles, 0.0)]);
-                (mean.value - 3.0).abs() < 2.0 * mean.error
+                let mean = mean_of_walks(&[WalkValues {
+                    cycles,
+                    systematic_error: 0.0,
+                }]);
+                (mean.value - 3.0).abs() < 2.0 * mean.standard_error
             });
             let share = hits.count() as f64 / f64::from(film_count);
             assert!((0.945..0.965).contains(&share), "{cycle_count}: {share}");
@@ -150,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_covers_the_truth_whether_or_not_walks_differ_from_each_other() {
+    fn the_true_value_lies_within_two_standard_errors_whether_or_not_walks_differ() {
         let mut noise = noise_source();
         for (walk_spread, walk_count) in
             [(0.0, 2), (0.0, 3), (1.0, 2), (1.0, 3), (3.0, 2), (3.0, 3)]
@@ -159,11 +173,14 @@ mod tests {
             let hits = (0..film_count).filter(|_| {
                 let mut walk_values = |_| {
                     let walk_offset = walk_spread * noise();
-                    ((0..4).map(|_| 3.0 + walk_offset + noise()).collect(), 0.0)
+                    WalkValues {
+                        cycles: (0..4).map(|_| 3.0 + walk_offset + noise()).collect(),
+                        systematic_error: 0.0,
+                    }
                 };
                 let walks: Vec<_> = (0..walk_count).map(&mut walk_values).collect();
                 let mean = mean_of_walks(&walks);
-                (mean.value - 3.0).abs() < 2.0 * mean.error
+                (mean.value - 3.0).abs() < 2.0 * mean.standard_error
             });
             let share = hits.count() as f64 / f64::from(film_count);
             // Two or three walks hardly show whether walks differ, so the bounds are wide.

@@ -3,8 +3,9 @@
 use lizard_contact::Travel;
 
 use crate::cycle_path::{self, CyclePoint};
+use crate::figure::Figure;
 use crate::gait::Gait;
-use crate::mean::{self, Mean};
+use crate::mean::{self, Mean, WalkValues};
 use crate::walk::{Walk, travel_components};
 
 /// A measured gait.
@@ -16,8 +17,8 @@ pub struct MeasuredGait {
     pub left: Mean,
     /// Turn per cycle, deg, counter-clockwise positive.
     pub turn: Mean,
-    /// Duration of a cycle, s, and its standard error.
-    pub period: [f64; 2],
+    /// Duration of a cycle, s.
+    pub period: Figure,
     /// The movement of each cycle.
     pub cycles: Vec<Travel>,
     /// The times of the calm phases that separate the cycles of each walk, s.
@@ -30,13 +31,11 @@ pub struct MeasuredGait {
 
 impl MeasuredGait {
     /// Computes the means over walks.
-    pub(crate) fn of(walks: Vec<Walk>, gait: &Gait) -> Self {
+    pub(crate) fn from_walks(walks: Vec<Walk>, gait: &Gait) -> Self {
         let mean_of = |i: usize| {
-            let values_of = |walk: &Walk| {
-                (
-                    travel_components(&walk.cycles.travels)[i].clone(),
-                    walk.common_errors()[i],
-                )
+            let values_of = |walk: &Walk| WalkValues {
+                cycles: travel_components(&walk.cycles.travels)[i].clone(),
+                systematic_error: walk.systematic_errors()[i],
             };
             mean::mean_of_walks(&walks.iter().map(values_of).collect::<Vec<_>>())
         };
@@ -45,17 +44,20 @@ impl MeasuredGait {
             .flat_map(|walk| walk.cycles.travels.clone())
             .collect();
         let share_of = |walk: &Walk| walk.cycles.travels.len() as f64 / cycles.len() as f64;
-        let mean_period = |i: usize| {
+        let mean_over_cycles = |value_of: fn(&Walk) -> f64| {
             walks
                 .iter()
-                .map(|walk| share_of(walk) * walk.cycles.period[i])
+                .map(|walk| share_of(walk) * value_of(walk))
                 .sum()
         };
         Self {
             forward: mean_of(0),
             left: mean_of(1),
             turn: mean_of(2),
-            period: [mean_period(0), mean_period(1)],
+            period: Figure {
+                value: mean_over_cycles(|walk| walk.cycles.period.value),
+                error: mean_over_cycles(|walk| walk.cycles.period.error),
+            },
             calm_times: walks
                 .iter()
                 .flat_map(|walk| walk.cycles.calm_times.clone())
@@ -69,6 +71,6 @@ impl MeasuredGait {
     /// Computes the means over all walks of several results of one gait, from one film or several.
     pub fn combine(results: &[Self], gait: &Gait) -> Self {
         let walks = results.iter().flat_map(|result| result.walks.clone());
-        Self::of(walks.collect(), gait)
+        Self::from_walks(walks.collect(), gait)
     }
 }

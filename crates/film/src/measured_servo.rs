@@ -1,12 +1,11 @@
-//! A servo measured in a film: the angle that it turns for its pulses, its rate, and the small steps that it
-//! ignores.
+//! A servo measured in a film: the angle that it turns for its pulses, its rate, and the small steps that it ignores.
 //!
 //! The servo gets the steps of [`crate::orders`] at even intervals, but the time of the first step in the film is
 //! unknown. It is found from the angles at which the horn rests, which must depend linearly on the orders.
 
 use crate::figure::Figure;
 use crate::least_squares;
-use crate::mean::{self, small_sample_factor};
+use crate::mean::{self, WalkValues, small_sample_factor};
 use crate::orders::{self, ORDER_INTERVAL, Order};
 use crate::path::PathPoint;
 use crate::rates::{LargeStep, Rates};
@@ -28,9 +27,9 @@ const MAX_UNEXPLAINED_SHARE: f64 = 0.02;
 const INTERVAL_MULTIPLES: [f64; 5] = [0.25, 0.5, 2.0, 4.0, 8.0];
 /// Largest rate that counts as the servo's own, as a share of the slew limit.
 const MAX_OWN_RATE_SHARE: f64 = 0.8;
-/// Standard error of an angle that the camera causes, as a share.
+/// Standard error that the camera causes in an angle, as a share.
 const CAMERA_SIGMA: f64 = 0.002;
-/// Standard error of a rate that the simple motor model causes, as a share.
+/// Standard error that the simple motor model causes in a rate, as a share.
 const MOTOR_SIGMA: f64 = 0.003;
 /// Smallest angle that counts as a movement, deg.
 const MIN_MOVEMENT: f64 = 0.05;
@@ -40,7 +39,7 @@ const MIN_MOVEMENT_SIGMAS: f64 = 3.0;
 const MAX_SMALL_MOVEMENT: f64 = 1.6;
 /// Standard error of the dead band's width, deg: the servo does not always stop at its edge.
 const DEAD_BAND_SIGMA: f64 = 0.06;
-/// Standard error of the load's torque, as a share: half a millimetre in a lever of 20 mm.
+/// Standard error of the load's torque, as a share: half a millimetre in a lever arm of 20 mm.
 const LOAD_SIGMA: f64 = 0.025;
 
 /// The known values of the jig, which holds a servo under the camera with the sheet's card on its horn.
@@ -57,18 +56,18 @@ pub struct Jig {
 /// The dead band that small steps show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeadBand {
-    /// Width, in robot.toml's deg; `None` if too few small steps moved the servo.
+    /// Width, nominal deg; `None` if too few small steps moved the servo.
     pub width: Option<Figure>,
-    /// Largest small step that moved nothing, in robot.toml's deg; 0 if all steps moved the servo.
+    /// Largest small step that moved nothing, nominal deg; 0 if all steps moved the servo.
     pub largest_ignored_step: f64,
 }
 
-/// A measured servo.
+/// A measured servo. A nominal deg is a deg by the pulse scale of robot.toml.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredServo {
-    /// Angle that the servo turns per deg of robot.toml; negative if it turns in the opposite direction.
+    /// Angle that the servo turns per nominal deg; negative if it turns in the opposite direction.
     pub gain: Figure,
-    /// Difference of the angles at which the servo stops after approaching from either side, in robot.toml's deg.
+    /// Difference of the angles at which the servo stops after approaching from either side, nominal deg.
     pub hysteresis: Figure,
     /// The dead band.
     pub dead_band: DeadBand,
@@ -96,7 +95,7 @@ impl MeasuredServo {
     pub fn of(path: &[PathPoint], jig: Jig) -> Result<Self, ServoTrouble> {
         let horn_path = HornPath::new(path);
         let orders = orders::orders(jig.side);
-        let first_order_seconds = horn_path.find_begin(&orders)?;
+        let first_order_seconds = horn_path.find_first_order(&orders)?;
         let rests: Vec<Option<f64>> = (0..orders.len())
             .map(|i| horn_path.rest_angle(first_order_seconds, ORDER_INTERVAL, i))
             .collect();
@@ -106,7 +105,7 @@ impl MeasuredServo {
             rate: horn_path.picture_rate(),
         };
         let groups: Vec<&[LargeStep]> = large_steps.iter().map(Vec::as_slice).collect();
-        let fit = Rates::of(&groups, jig.spin_up).ok_or(too_few_pictures)?;
+        let fit = Rates::fit(&groups, jig.spin_up).ok_or(too_few_pictures)?;
         let (rate_ccw, rate_cw) = (fit.rates[0], fit.rates[1]);
         let rate = fit.propagate_error((rate_ccw + rate_cw) / 2.0, &[0.5, 0.5]);
         if rate.value > MAX_OWN_RATE_SHARE * jig.slew {
@@ -145,7 +144,7 @@ impl MeasuredServo {
             rate: self.picture_rate.min(loaded.picture_rate),
         };
         let loss_in = |direction: usize| {
-            let fit = Rates::of(
+            let fit = Rates::fit(
                 &[&self.large_steps[direction], &loaded.large_steps[direction]],
                 self.expected_spin_up,
             )?;
@@ -160,7 +159,7 @@ impl MeasuredServo {
             loss_in(1).ok_or(too_few_pictures)?,
         ];
         let loss = losses[usize::from(losses[1].value > losses[0].value)];
-        if !loss.is_above(0.0) {
+        if !loss.is_significantly_above(0.0) {
             return Err(ServoTrouble::LoadTooSmall {
                 percent: 100.0 * loss.value,
                 error: 100.0 * loss.error,
@@ -312,7 +311,7 @@ impl HornPath {
     }
 
     /// Finds the time of the first order, s, for which the unexplained share is smallest; returns both.
-    fn find_best_begin(&self, orders: &[Order], interval: f64) -> Option<(f64, f64)> {
+    fn find_best_first_order(&self, orders: &[Order], interval: f64) -> Option<(f64, f64)> {
         let (first, last) = (self.angles.first()?.0, self.angles.last()?.0);
         let end = last - interval * (orders.len() as f64 - 1.0 + REST_SHARES[0]);
         let try_count =
@@ -325,7 +324,7 @@ impl HornPath {
     }
 
     /// Finds the time of the first order, s.
-    fn find_begin(&self, orders: &[Order]) -> Result<f64, ServoTrouble> {
+    fn find_first_order(&self, orders: &[Order]) -> Result<f64, ServoTrouble> {
         let angle_values = || self.angles.iter().map(|(_, angle)| *angle);
         let turn =
             angle_values().fold(f64::MIN, f64::max) - angle_values().fold(f64::MAX, f64::min);
@@ -336,14 +335,14 @@ impl HornPath {
         }
         let is_explained = |best: &(f64, f64)| best.1 < MAX_UNEXPLAINED_SHARE;
         if let Some((begin, _)) = self
-            .find_best_begin(orders, ORDER_INTERVAL)
+            .find_best_first_order(orders, ORDER_INTERVAL)
             .filter(is_explained)
         {
-            return Ok(self.refine_begin(begin));
+            return Ok(self.refine_first_order(begin));
         }
         for multiple in INTERVAL_MULTIPLES {
             if self
-                .find_best_begin(orders, multiple * ORDER_INTERVAL)
+                .find_best_first_order(orders, multiple * ORDER_INTERVAL)
                 .is_some_and(|best| is_explained(&best))
             {
                 return Err(ServoTrouble::AnotherStepInterval { ratio: multiple });
@@ -358,7 +357,7 @@ impl HornPath {
     }
 
     /// Refines the time of the first order, s, from the times at which the large steps are half complete.
-    fn refine_begin(&self, begin: f64) -> f64 {
+    fn refine_first_order(&self, begin: f64) -> f64 {
         let begin_by_step = |i: usize| {
             let (from, to) = (
                 self.rest_angle(begin, ORDER_INTERVAL, i - 1)?,
@@ -440,10 +439,13 @@ impl HornPath {
             }
         }
         let width = (lost_angles.len() > 1).then(|| {
-            let mean = mean::mean_of_walks(&[(lost_angles, 0.0)]);
+            let mean = mean::mean_of_walks(&[WalkValues {
+                cycles: lost_angles,
+                systematic_error: 0.0,
+            }]);
             Figure {
                 value: mean.value,
-                error: mean.error.hypot(DEAD_BAND_SIGMA),
+                error: mean.standard_error.hypot(DEAD_BAND_SIGMA),
             }
         });
         DeadBand {

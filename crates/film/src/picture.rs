@@ -12,7 +12,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Makes a picture from its rows; `None` if the length of `grey` is not `width * height`, or is zero.
+    /// Creates a picture from its rows; `None` if the length of `grey` is not `width * height`, or is zero.
     pub fn new(width: usize, height: usize, grey: Vec<u8>) -> Option<Self> {
         let is_complete = width.checked_mul(height) == Some(grey.len()) && !grey.is_empty();
         is_complete.then_some(Self {
@@ -22,8 +22,7 @@ impl Picture {
         })
     }
 
-    /// Makes a grey picture from a coloured one with four bytes per pixel: red, green, blue, and one that is
-    /// ignored. `None` if the length of `pixels` is not `4 * width * height`, or is zero.
+    /// Converts a coloured picture to grey. It has four bytes per pixel: red, green, blue, and one that is ignored. `None` if the length of `pixels` is not `4 * width * height`, or is zero.
     pub fn of_colours(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
         let (pixels, rest) = pixels.as_chunks::<4>();
         let grey = pixels
@@ -33,9 +32,9 @@ impl Picture {
             .then(|| Self::new(width, height, grey.collect()))?
     }
 
-    /// The part of the picture between two corners, of which the second is exclusive; `None` if it is empty or
+    /// The rectangle of the picture between two corners, of which the second is exclusive; `None` if it is empty or
     /// extends outside.
-    pub(crate) fn part(
+    pub(crate) fn crop(
         &self,
         [left, top]: [usize; 2],
         [right, bottom]: [usize; 2],
@@ -76,7 +75,7 @@ impl Picture {
     }
 }
 
-/// The grey of a colour, by BT.601.
+/// The grey value of a colour, by BT.601.
 pub(crate) fn luminance(red: u8, green: u8, blue: u8) -> u8 {
     let sum = 299 * u32::from(red) + 587 * u32::from(green) + 114 * u32::from(blue);
     (sum / 1000) as u8

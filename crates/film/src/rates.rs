@@ -15,7 +15,7 @@ const USED_SHARE_RANGE: [f64; 2] = [0.02, 0.85];
 const SPIN_UP_SIGMA: f64 = 0.7;
 /// Largest standard error of the logarithm of the time constant at which the film counts as determining it.
 const MAX_LOG_ERROR: f64 = 0.25;
-/// Standard error of a time constant that the simple motor model causes, as a share.
+/// Standard error that the simple motor model causes in a time constant, as a share.
 const MOTOR_SIGMA: f64 = 0.02;
 /// First estimate of the error of an angle in one picture, deg; the residuals give the true one.
 const ANGLE_SIGMA: f64 = 0.3;
@@ -52,7 +52,7 @@ pub(crate) struct Rates {
 impl Rates {
     /// Fits groups of steps, each group with its own rate; `None` if there are too few pictures or the fit fails.
     /// `expected_spin_up` is the expected time constant, s.
-    pub(crate) fn of(groups: &[&[LargeStep]], expected_spin_up: f64) -> Option<Self> {
+    pub(crate) fn fit(groups: &[&[LargeStep]], expected_spin_up: f64) -> Option<Self> {
         let mut start = Vec::new();
         for group in groups {
             let usable_steps = || group.iter().filter(|step| step.0.len() > 1);

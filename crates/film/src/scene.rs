@@ -41,9 +41,9 @@ pub(crate) struct View {
     pub deck_corners: Vec<[Pixel; 4]>,
 }
 
-/// The known measures of the scene.
+/// The known dimensions of the sheet, the robot and the pictures.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Measures {
+pub(crate) struct Dimensions {
     /// True length of a printed mm, mm.
     pub print_scale: f64,
     /// Height of the deck tag above the floor, mm.
@@ -55,7 +55,7 @@ pub(crate) struct Measures {
 /// The parameters that the views share, and the camera of the first view.
 #[derive(Debug, Clone)]
 pub(crate) struct Scene {
-    measures: Measures,
+    dimensions: Dimensions,
     /// The shared parameters, then the first view's pose.
     parameters: Vec<f64>,
     /// The covariance of these parameters.
@@ -69,15 +69,15 @@ impl Scene {
     ///
     /// # Errors
     /// Fails if no camera fits the tags, or if their arrangement or size differs from the sheet's.
-    pub(crate) fn of(views: &[View], measures: Measures) -> Result<Self, Trouble> {
-        let width = measures.picture_size[0] as f64;
+    pub(crate) fn fit(views: &[View], dimensions: Dimensions) -> Result<Self, Trouble> {
+        let width = dimensions.picture_size[0] as f64;
         let fits = START_FOCAL_RATIOS
             .iter()
-            .filter_map(|start| fit(views, &measures, start * width));
+            .filter_map(|start| fit_parameters(views, &dimensions, start * width));
         let best_fit = fits.min_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
         let best_fit = best_fit.ok_or(Trouble::NoCamera)?;
         let corner_count = views.len() * FLOOR_TAG_COUNT * 4;
-        let floor_residuals = residuals(&best_fit.parameters, views, &measures, false);
+        let floor_residuals = residuals(&best_fit.parameters, views, &dimensions, false);
         let corner_error = FLOOR_SIGMA
             * (floor_residuals.iter().map(|r| r * r).sum::<f64>() / corner_count as f64).sqrt();
         if !corner_error.is_finite() || corner_error > MAX_CORNER_ERROR {
@@ -86,9 +86,9 @@ impl Scene {
             });
         }
         let ink_spread = best_fit.parameters[1];
-        if ink_spread.abs() > MAX_INK_SPREAD * measures.print_scale {
+        if ink_spread.abs() > MAX_INK_SPREAD * dimensions.print_scale {
             return Err(Trouble::WrongTagSize {
-                edge: sheet::FLOOR_TAG_EDGE + 2.0 * ink_spread / measures.print_scale,
+                edge: sheet::FLOOR_TAG_EDGE + 2.0 * ink_spread / dimensions.print_scale,
             });
         }
         let kept_parameter_count = SHARED_PARAMETER_COUNT + 6;
@@ -101,7 +101,7 @@ impl Scene {
         let reduced_chi_square =
             (best_fit.sum_of_squares / degrees_of_freedom.max(1) as f64).max(1.0);
         Ok(Self {
-            measures,
+            dimensions,
             parameters: best_fit.parameters[..kept_parameter_count].to_vec(),
             covariance: best_fit
                 .covariance
@@ -130,16 +130,16 @@ impl Scene {
 
     /// A camera of the scene in another pose.
     pub(crate) fn camera_at(&self, pose: &[f64]) -> Camera {
-        Camera::new(self.focal_length(), self.measures.picture_size, pose)
+        Camera::new(self.focal_length(), self.dimensions.picture_size, pose)
     }
 
-    /// Finds the camera's pose from the floor tags of a picture; `None` if no pose fits them, as when one is
-    /// partly covered.
+    /// Finds the camera's pose from the floor tags of a picture; `None` if no pose fits them, for example because
+    /// a tag is partly covered.
     pub(crate) fn find_pose(&self, floor_corners: &FloorCorners) -> Option<Pose> {
-        let start = estimate_pose(floor_corners, &self.measures, self.focal_length())?;
+        let start = estimate_pose(floor_corners, &self.dimensions, self.focal_length())?;
         let model = |pose: &[f64]| {
             let camera = self.camera_at(pose);
-            floor_residuals(&self.parameters, &camera, &self.measures, floor_corners)
+            floor_residuals(&self.parameters, &camera, &self.dimensions, floor_corners)
         };
         let fit = least_squares::fit(&start, model)?;
         let corner_error = FLOOR_SIGMA * (fit.sum_of_squares / (4 * FLOOR_TAG_COUNT) as f64).sqrt();
@@ -152,14 +152,14 @@ impl Scene {
 
     /// Finds the robot's place from the corners of its deck tag; `None` if they do not determine it.
     pub(crate) fn find_place(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<Place> {
-        let start = estimate_deck_place(camera, corners, self.measures.deck_height)?;
+        let start = estimate_deck_place(camera, corners, self.dimensions.deck_height)?;
         let model = |place: &[f64]| {
             deck_residuals(
                 &self.parameters,
                 camera,
-                &self.measures,
+                &self.dimensions,
                 place,
-                self.measures.deck_height,
+                self.dimensions.deck_height,
                 corners,
             )
         };
@@ -174,24 +174,26 @@ impl Scene {
         })
     }
 
-    /// Finds the height of the deck tag from its size in the picture, mm; `None` if its corners do not determine
-    /// it.
+    /// Finds the height of the deck tag from its size in the picture, mm; `None` if its corners do not determine it.
     pub(crate) fn find_deck_height(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<f64> {
         let [forward, left, heading] =
-            estimate_deck_place(camera, corners, self.measures.deck_height)?;
+            estimate_deck_place(camera, corners, self.dimensions.deck_height)?;
         let model = |parameters: &[f64]| {
             deck_residuals(
                 &self.parameters,
                 camera,
-                &self.measures,
+                &self.dimensions,
                 parameters,
                 parameters[3],
                 corners,
             )
         };
         Some(
-            least_squares::fit(&[forward, left, heading, self.measures.deck_height], model)?
-                .parameters[3],
+            least_squares::fit(
+                &[forward, left, heading, self.dimensions.deck_height],
+                model,
+            )?
+            .parameters[3],
         )
     }
 
@@ -200,7 +202,7 @@ impl Scene {
         std::array::from_fn(|id| {
             strip_to_floor(
                 &self.parameters,
-                self.measures.print_scale,
+                self.dimensions.print_scale,
                 id,
                 sheet::middle_on_strip(id),
             )
@@ -211,7 +213,7 @@ impl Scene {
 /// Converts a point of a floor tag's strip, in designed mm, to a place on the floor, mm.
 fn strip_to_floor(shared: &[f64], print_scale: f64, id: usize, point: [f64; 2]) -> [f64; 2] {
     let point = point.map(|coordinate| print_scale * coordinate);
-    if sheet::strip_of(id) == 0 {
+    if sheet::strip_index(id) == 0 {
         return point;
     }
     let strip = Place {
@@ -231,17 +233,17 @@ fn printed_corners(shared: &[f64], print_scale: f64, id: usize) -> [[f64; 2]; 4]
 fn floor_residuals(
     shared: &[f64],
     camera: &Camera,
-    measures: &Measures,
+    dimensions: &Dimensions,
     floor_corners: &FloorCorners,
 ) -> Vec<f64> {
     let mut residuals = Vec::with_capacity(8 * FLOOR_TAG_COUNT);
     for (id, corners) in floor_corners.iter().enumerate() {
         let [x, y] = sheet::middle_on_strip(id);
-        for ([u, v], corner) in printed_corners(shared, measures.print_scale, id)
+        for ([u, v], corner) in printed_corners(shared, dimensions.print_scale, id)
             .iter()
             .zip(corners)
         {
-            let point = strip_to_floor(shared, measures.print_scale, id, [x + u, y + v]);
+            let point = strip_to_floor(shared, dimensions.print_scale, id, [x + u, y + v]);
             let image = camera.project(point, 0.0);
             residuals.extend([0, 1].map(|i| (image[i] - corner[i]) / FLOOR_SIGMA));
         }
@@ -253,7 +255,7 @@ fn floor_residuals(
 fn deck_residuals(
     shared: &[f64],
     camera: &Camera,
-    measures: &Measures,
+    dimensions: &Dimensions,
     parameters: &[f64],
     deck_height: f64,
     corners: &[Pixel; 4],
@@ -263,12 +265,13 @@ fn deck_residuals(
         left: parameters[1],
         heading: parameters[2],
     };
-    let points = printed_corners(shared, measures.print_scale, DECK_TAG_ID);
+    let points = printed_corners(shared, dimensions.print_scale, DECK_TAG_ID);
     let pairs = points.iter().zip(corners);
     pairs
         .flat_map(|(&[x, y], corner)| {
             // The upper edge of the tag is ahead, so its left edge is on the left.
-            let floor_point = place.to_floor([measures.print_scale * y, -measures.print_scale * x]);
+            let floor_point =
+                place.to_floor([dimensions.print_scale * y, -dimensions.print_scale * x]);
             let image = camera.project(floor_point, deck_height);
             [0, 1].map(|i| (image[i] - corner[i]) / DECK_SIGMA)
         })
@@ -290,7 +293,7 @@ fn estimate_deck_place(
         [-100.0, 100.0],
     ];
     let images = square.map(|point| camera.project(point, deck_height));
-    let map = Homography::of_four(images, square)?;
+    let map = Homography::from_four_points(images, square)?;
     let [a, b, c, d] = corners.map(|corner| map.map(corner));
     let mean_of = |i: usize| (a[i] + b[i] + c[i] + d[i]) / 4.0;
     let upper_minus_lower = |i: usize| a[i] + b[i] - c[i] - d[i];
@@ -304,20 +307,20 @@ fn estimate_deck_place(
 /// A first estimate of the camera's pose, from the first strip; `None` if its tags do not determine one.
 fn estimate_pose(
     floor_corners: &FloorCorners,
-    measures: &Measures,
+    dimensions: &Dimensions,
     focal_length: f64,
 ) -> Option<Pose> {
     pose_from_homography(
-        &strip_homography(floor_corners, measures, 0)?,
+        &strip_homography(floor_corners, dimensions, 0)?,
         focal_length,
-        measures.picture_size,
+        dimensions.picture_size,
     )
 }
 
 /// The homography from a strip, with its middle as the origin, to the picture; `None` if it is degenerate.
 fn strip_homography(
     floor_corners: &FloorCorners,
-    measures: &Measures,
+    dimensions: &Dimensions,
     strip: usize,
 ) -> Option<Homography> {
     let ids = strip * TAGS_PER_STRIP..(strip + 1) * TAGS_PER_STRIP;
@@ -325,12 +328,12 @@ fn strip_homography(
     for id in ids.clone() {
         let [x, y] = sheet::middle_on_strip(id);
         let corners = sheet::tag_corners(sheet::tag_edge(id));
-        points.extend(
-            corners
-                .map(|[u, v]| [x + u, y + v].map(|coordinate| measures.print_scale * coordinate)),
-        );
+        points
+            .extend(corners.map(|[u, v]| {
+                [x + u, y + v].map(|coordinate| dimensions.print_scale * coordinate)
+            }));
     }
-    Homography::of_points(&points, &floor_corners[ids].concat())
+    Homography::from_points(&points, &floor_corners[ids].concat())
 }
 
 /// The errors of all tags' corners in all views, divided by their standard deviations; without the deck tag if
@@ -338,34 +341,34 @@ fn strip_homography(
 fn residuals(
     parameters: &[f64],
     views: &[View],
-    measures: &Measures,
+    dimensions: &Dimensions,
     includes_deck_tags: bool,
 ) -> Vec<f64> {
     let (shared, mut rest) = parameters.split_at(SHARED_PARAMETER_COUNT);
     let mut all_residuals = Vec::new();
-    let mut take = |count: usize| {
-        let (taken, remaining) = rest.split_at(count);
+    let mut next_parameters = |count: usize| {
+        let (next, remaining) = rest.split_at(count);
         rest = remaining;
-        taken
+        next
     };
     let cameras: Vec<Camera> = views
         .iter()
-        .map(|_| Camera::new(shared[0], measures.picture_size, take(6)))
+        .map(|_| Camera::new(shared[0], dimensions.picture_size, next_parameters(6)))
         .collect();
     for (view, camera) in views.iter().zip(&cameras) {
         all_residuals.extend(floor_residuals(
             shared,
             camera,
-            measures,
+            dimensions,
             &view.floor_corners,
         ));
         for corners in view.deck_corners.iter().filter(|_| includes_deck_tags) {
             all_residuals.extend(deck_residuals(
                 shared,
                 camera,
-                measures,
-                take(3),
-                measures.deck_height,
+                dimensions,
+                next_parameters(3),
+                dimensions.deck_height,
                 corners,
             ));
         }
@@ -374,9 +377,9 @@ fn residuals(
 }
 
 /// Fits all parameters, starting with this focal length; `None` if the tags do not determine them.
-fn fit(views: &[View], measures: &Measures, focal_length: f64) -> Option<Fit> {
+fn fit_parameters(views: &[View], dimensions: &Dimensions, focal_length: f64) -> Option<Fit> {
     let first_view = views.first()?;
-    let to_floor = strip_homography(&first_view.floor_corners, measures, 0)?.inverse()?;
+    let to_floor = strip_homography(&first_view.floor_corners, dimensions, 0)?.inverse()?;
     let middle_of = |id: usize| {
         let corners = first_view.floor_corners[id].map(|corner| to_floor.map(corner));
         [0, 1].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 4.0)
@@ -392,15 +395,19 @@ fn fit(views: &[View], measures: &Measures, focal_length: f64) -> Option<Fit> {
     ];
     let mut deck_places = Vec::new();
     for view in views {
-        let pose = estimate_pose(&view.floor_corners, measures, focal_length)?;
-        let camera = Camera::new(focal_length, measures.picture_size, &pose);
+        let pose = estimate_pose(&view.floor_corners, dimensions, focal_length)?;
+        let camera = Camera::new(focal_length, dimensions.picture_size, &pose);
         start.extend(pose);
         for corners in &view.deck_corners {
-            deck_places.extend(estimate_deck_place(&camera, corners, measures.deck_height)?);
+            deck_places.extend(estimate_deck_place(
+                &camera,
+                corners,
+                dimensions.deck_height,
+            )?);
         }
     }
     start.extend(deck_places);
     least_squares::fit(&start, |parameters| {
-        residuals(parameters, views, measures, true)
+        residuals(parameters, views, dimensions, true)
     })
 }

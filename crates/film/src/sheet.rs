@@ -1,8 +1,8 @@
 //! The layout of the printed sheet of tags. All its dimensions are defined here.
 //!
 //! The robot is larger than a sheet of paper, so the sheet is cut into three pieces: two strips lie on the floor, one
-//! on either side of the robot's path, and a card lies on the robot's deck. The two tags of a strip have a known
-//! distance, which gives the scale. The strips' positions are found in the film, so nobody has to measure them. A
+//! on either side of the robot's path, and a card lies on the robot's deck. The two tags of a strip are a known
+//! distance apart, which gives the scale. The strips' positions are found in the film, so nobody has to measure them. A
 //! ruler line on each strip shows the scale at which the sheet was printed.
 //!
 //! The tags have ids 0 to 4 of the AprilTag family 36h11, so other programs can read them, too.
@@ -47,8 +47,8 @@ pub const RULER_LENGTH: f64 = 100.0;
 /// Word beside the card's arrow, which points to the robot's head.
 pub const FORWARD_WORD: &str = "HEAD";
 
-/// The strip of a floor tag, counted from 0.
-pub fn strip_of(id: usize) -> usize {
+/// The index of a floor tag's strip.
+pub fn strip_index(id: usize) -> usize {
     id / TAGS_PER_STRIP
 }
 
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     /// The codes of a tag in its four orientations.
-    fn codes_when_turned(id: usize) -> [u64; 4] {
+    fn rotated_codes(id: usize) -> [u64; 4] {
         let bit = |row: usize, column: usize| u64::from(is_white(id, row + 1, column + 1));
         let code_of = |bit_at: &dyn Fn(usize, usize) -> u64| {
             (0..36).fold(0, |code, i| code << 1 | bit_at(i / 6, i % 6))
@@ -103,9 +103,9 @@ mod tests {
     #[test]
     fn any_two_tags_in_any_orientation_differ_in_at_least_eleven_squares() {
         for (a, first_code) in CODES.into_iter().enumerate() {
-            assert_eq!(codes_when_turned(a)[0], first_code);
+            assert_eq!(rotated_codes(a)[0], first_code);
             for b in 0..CODES.len() {
-                for (turn, second_code) in codes_when_turned(b).into_iter().enumerate() {
+                for (turn, second_code) in rotated_codes(b).into_iter().enumerate() {
                     let difference = (first_code ^ second_code).count_ones();
                     assert!(
                         (a == b && turn == 0) || difference >= 11,

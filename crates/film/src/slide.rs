@@ -15,7 +15,7 @@ use crate::least_squares;
 use crate::mean::small_sample_factor;
 use crate::path::PathPoint;
 
-/// Time at the beginning during which the board is level, s.
+/// Time at the beginning of the film during which the board is level, s.
 const LEVEL_SECONDS: f64 = 1.0;
 /// Largest tilt of the board in that time, relative to its mean direction, deg.
 const MAX_LEVEL_TILT: f64 = 1.0;
@@ -162,7 +162,7 @@ impl Slide {
             (observation.position[0] - rest_position[0])
                 .hypot(observation.position[1] - rest_position[1])
         };
-        let Some(slid_index) = observations
+        let Some(sliding_index) = observations
             .iter()
             .position(|observation| distance_of(observation) > MIN_SLIDE)
         else {
@@ -171,12 +171,13 @@ impl Slide {
                 tilt: largest_tilt(&observations).to_degrees(),
             });
         };
-        let first_index = observations[..slid_index]
+        let first_index = observations[..sliding_index]
             .iter()
             .rposition(|observation| distance_of(observation) < FIT_RANGE[0]);
         let first_index = first_index.map_or(0, |index| index + 1);
-        let displacement = [0, 1].map(|i| observations[slid_index].position[i] - rest_position[i]);
-        check_directions(&observations[slid_index], displacement)?;
+        let displacement =
+            [0, 1].map(|i| observations[sliding_index].position[i] - rest_position[i]);
+        check_directions(&observations[sliding_index], displacement)?;
         let slide_distance = displacement[0].hypot(displacement[1]);
         let distance_along = |observation: &Observation| {
             (0..2)
@@ -186,7 +187,7 @@ impl Slide {
         };
         let smoothed_tilts = smooth_tilts(&observations);
         // The slide ends when it is long enough or when something stops it.
-        let mut last_index = slid_index;
+        let mut last_index = sliding_index;
         let speed_at = |i: usize| {
             (distance_along(&observations[i]) - distance_along(&observations[i - 1]))
                 / (observations[i].seconds - observations[i - 1].seconds)
@@ -236,8 +237,8 @@ impl Slide {
         let tan_derivative = 1.0 + static_friction * static_friction;
         Ok(Self {
             is_head_first: angle_between(
-                observations[slid_index].heading,
-                observations[slid_index].downhill,
+                observations[sliding_index].heading,
+                observations[sliding_index].downhill,
             ) < 90.0,
             begin_seconds,
             tilt,
@@ -363,9 +364,9 @@ fn fit_sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
 fn extrapolate_begin(points: &[[f64; 3]], friction: f64, previous_seconds: f64) -> (f64, f64) {
     let [seconds, tilt, displacement] = points[0];
     let acceleration = 1000.0 * GRAVITY * (tilt.sin() - friction * tilt.cos());
-    let back_seconds = (2.0 * displacement / acceleration.max(1.0)).sqrt();
+    let elapsed_seconds = (2.0 * displacement / acceleration.max(1.0)).sqrt();
     let gap = seconds - previous_seconds;
-    let begin = (seconds - back_seconds).max(previous_seconds - gap - 1.0);
-    // If the acceleration grows from zero, the true beginning is earlier, so half of `back_seconds` counts as error.
-    (begin, (gap / 2.0).hypot(back_seconds / 2.0))
+    let begin = (seconds - elapsed_seconds).max(previous_seconds - gap - 1.0);
+    // If the acceleration grows from zero, the slide began earlier, so half of `elapsed_seconds` counts as error.
+    (begin, (gap / 2.0).hypot(elapsed_seconds / 2.0))
 }

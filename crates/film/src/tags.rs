@@ -1,8 +1,8 @@
 //! Reading the tags of the sheet in a picture.
 //!
-//! [`read_tags`] finds dark quadrilaterals, refines their edges and reads their codes. Of the tag
-//! family's 587 codes, only those on the sheet are known here. In every orientation, any two of them differ in eleven
-//! squares or more, so a few misread squares do no harm.
+//! [`read_tags`] finds dark quadrilaterals, refines their edges and reads their codes. Of the tag family's 587 codes, only
+//! those on the sheet are known here. In every orientation, any two of them differ in eleven squares or more, so a few
+//! misread squares do no harm.
 
 use crate::blobs::{self, Quad};
 use crate::edges::{self, Square};
@@ -13,8 +13,7 @@ use crate::sheet::{CODES, SQUARES_PER_SIDE, is_white};
 /// Largest number of misread squares with which a tag is still recognised.
 const MAX_MISREAD_SQUARES: usize = 3;
 
-/// Largest movement of a tag from one picture to the next, as a share of its size, with which it is found near its
-/// last place.
+/// Largest movement of a tag from one picture to the next, as a share of its size, up to which [`find_near`] finds it.
 const MAX_MOVE_SHARE: f64 = 0.3;
 
 /// A tag in a picture.
@@ -34,8 +33,8 @@ pub fn read_tags(picture: &Picture) -> Vec<Tag> {
     )
 }
 
-/// Finds the tag of an id near its last place; `None` if it is not there. The result is that of
-/// [`read_tags`] if the tag moved by less than [`MAX_MOVE_SHARE`] of its size.
+/// Finds the tag with an id near its last place; `None` if it is not there. The result equals that of [`read_tags`] if
+/// the tag moved by less than [`MAX_MOVE_SHARE`] of its size.
 pub(crate) fn find_near(picture: &Picture, id: usize, last_corners: &[Pixel; 4]) -> Option<Tag> {
     let half_window = blobs::half_window(picture);
     let size = picture.size();
@@ -44,12 +43,12 @@ pub(crate) fn find_near(picture: &Picture, id: usize, last_corners: &[Pixel; 4])
         let [smallest, largest] = [f64::min, f64::max]
             .map(|extreme| last_corners.iter().map(|corner| corner[i]).reduce(extreme));
         let (smallest, largest) = (smallest?, largest?);
-        // The part has to include the surroundings of the tag's pixels, too.
+        // The cropped picture has to include the windows with which the tag's pixels are compared.
         let margin = (largest - smallest) * MAX_MOVE_SHARE + half_window as f64 + 2.0;
         low[i] = (smallest - margin).max(0.0) as usize;
         high[i] = size[i].min((largest + margin).max(0.0) as usize);
     }
-    let quads = blobs::find_quads(&picture.part(low, high)?, half_window).into_iter();
+    let quads = blobs::find_quads(&picture.crop(low, high)?, half_window).into_iter();
     let quads_in_picture =
         quads.map(|quad| quad.map(|[x, y]| [x + low[0] as f64, y + low[1] as f64]));
     let mut tags = decode_quads(picture, quads_in_picture).into_iter();
@@ -65,13 +64,12 @@ fn decode_quads(picture: &Picture, quads: impl IntoIterator<Item = Quad>) -> Vec
         .collect()
 }
 
-/// Reads the code of a square, starting at each of its corners in turn; `None` if no tag of the sheet has this
-/// code.
+/// Reads the code of a square, starting at each of its corners in turn; `None` if no tag of the sheet has this code.
 fn decode(picture: &Picture, square: &Square) -> Option<Tag> {
     (0..4).find_map(|turn| {
         let corners = std::array::from_fn(|i| square.corners[(i + turn) % 4]);
         let edge = SQUARES_PER_SIDE as f64;
-        let to_picture = Homography::of_four(
+        let to_picture = Homography::from_four_points(
             [[0.0, 0.0], [edge, 0.0], [edge, edge], [0.0, edge]],
             corners,
         )?;

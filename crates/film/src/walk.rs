@@ -20,19 +20,19 @@ pub(crate) struct Walk {
 impl Walk {
     /// The part of the mean cycle's error that all cycles share: the errors of ruler and height, of clock, and of
     /// camera. Forward and left, mm, and turn, deg.
-    pub(crate) fn common_errors(&self) -> [f64; 3] {
+    pub(crate) fn systematic_errors(&self) -> [f64; 3] {
         let components = travel_components(&self.cycles.travels);
-        let [period, error] = self.cycles.period;
+        let period = self.cycles.period;
         [0, 1, 2].map(|i| {
             let mean = components[i].iter().sum::<f64>() / components[i].len() as f64;
             let scale_error = if i < 2 { mean * self.scale_error } else { 0.0 };
-            let clock_error = self.cycles.calm_rate[i] * error / period;
+            let clock_error = self.cycles.calm_rate[i] * period.error / period.value;
             (scale_error.powi(2) + clock_error.powi(2) + self.scene_variances[i]).sqrt()
         })
     }
 }
 
-/// The place in a picture minus the predicted one, both relative to the beginning of the cycle.
+/// The measured place in a picture minus the predicted one, both relative to the start of the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Deviation {
     /// Index of the cycle in the walk.

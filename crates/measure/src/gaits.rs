@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::fmt::Write as _;
 
-use lizard_film::{Gait, Likeness, MeasuredGait, Trouble, shortest_rest};
+use lizard_film::{Gait, GaitMatch, MeasuredGait, Trouble, shortest_rest};
 use lizard_robot::{CheckedGait, Robot};
 
 use crate::named_film::{NamedFilm, Walk};
@@ -164,21 +164,21 @@ impl<'a> Gaits<'a> {
     /// gait, or two.
     fn recognise_gait(&self, walk: Walk) -> Result<usize, String> {
         let name_of = |index: usize| self.all_candidates()[index].name();
-        let (reason, has_hint) = match self.likeness(walk) {
-            Likeness::One(index) => return Ok(index),
-            Likeness::Two(best_index, second_index) => (
+        let (reason, has_hint) = match self.match_gait(walk) {
+            GaitMatch::Unique(index) => return Ok(index),
+            GaitMatch::Ambiguous { best, second_best } => (
                 format!(
                     "the path is most like {}, and nearly as much like {}",
-                    name_of(best_index),
-                    name_of(second_index)
+                    name_of(best),
+                    name_of(second_best)
                 ),
                 true,
             ),
-            Likeness::None(Trouble::NotThisGait { .. }) => (
+            GaitMatch::NoMatch(Trouble::NotThisGait { .. }) => (
                 "the path is like no gait of robot.toml at this pace".to_owned(),
                 true,
             ),
-            Likeness::None(trouble) => (trouble.to_string(), false),
+            GaitMatch::NoMatch(trouble) => (trouble.to_string(), false),
         };
         let hint = match has_hint {
             true => "; name the gait of each walk",
@@ -187,20 +187,22 @@ impl<'a> Gaits<'a> {
         Err(format!("{}: {reason}{hint}", walk.label()))
     }
 
-    /// The gait of robot.toml that a walk resembles, if any.
-    fn likeness(&self, walk: Walk) -> Likeness {
+    /// Finds which gait of robot.toml a walk shows.
+    fn match_gait(&self, walk: Walk) -> GaitMatch {
         let predicted_gaits: Vec<Gait> = self
             .all_candidates()
             .iter()
             .map(|candidate| candidate.predicted_gait.clone())
             .collect();
-        walk.film.analysis.likeness(&predicted_gaits, walk.interval)
+        walk.film
+            .analysis
+            .match_gait(&predicted_gaits, walk.interval)
     }
 
     /// Finds the name of the gait that a walk clearly resembles; `None` if it resembles no gait, or two.
     pub(crate) fn find_resembled_gait(&self, walk: Walk) -> Option<&'a str> {
-        match self.likeness(walk) {
-            Likeness::One(index) => Some(self.all_candidates()[index].name()),
+        match self.match_gait(walk) {
+            GaitMatch::Unique(index) => Some(self.all_candidates()[index].name()),
             _ => None,
         }
     }

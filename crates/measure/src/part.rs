@@ -41,11 +41,12 @@ pub fn verdict(difference_in_errors: f64) -> String {
 impl Part {
     pub(crate) fn new(mean: Mean, predicted: Option<f64>) -> Self {
         // A simulated film may have no spread; the bound avoids a division by zero.
-        let differs = predicted.map(|predicted| (mean.value - predicted) / mean.error.max(1e-6));
+        let differs =
+            predicted.map(|predicted| (mean.value - predicted) / mean.standard_error.max(1e-6));
         Self {
             mean: mean.value,
-            sd: mean.spread,
-            error: mean.error,
+            sd: mean.standard_deviation,
+            error: mean.standard_error,
             predicted,
             differs,
             agrees: differs.map(|differs| differs.abs() <= MAX_AGREEING_ERRORS),

@@ -257,8 +257,8 @@ impl<'a> GaitReport<'a> {
                 .map(|walk| Span::new(gaits, walk, differs_from_prediction))
                 .collect(),
             cycles: measured_gait.cycles.len(),
-            period: measured_gait.period[0],
-            period_error: measured_gait.period[1],
+            period: measured_gait.period.value,
+            period_error: measured_gait.period.error,
             period_expected: candidate.predicted_gait.period,
             forward,
             left,

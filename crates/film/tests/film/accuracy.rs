@@ -5,13 +5,13 @@ use lizard_film::{CameraEstimate, Film, Gait, Mean, MeasuredGait, read_tags};
 use lizard_studio::render::{Studio, random_normal};
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
-use crate::studio::{TRUE_SIZE, film_walk, small_studio};
+use crate::studio::{FULL_SCALE, film_walk, small_studio};
 
-/// Films some cycles with a random camera and measures them.
+/// Films some cycles of a gait with a random camera, and measures them.
 fn measure_film(
     gait: &Gait,
-    cycles: usize,
-    rate: f64,
+    cycle_count: usize,
+    picture_rate: f64,
     variation: Variation,
     rng: &mut Rng,
 ) -> (MeasuredGait, CameraEstimate) {
@@ -19,15 +19,15 @@ fn measure_film(
     // The errors of the user's ruler.
     studio.deck_tag_height += variation.ruler_deviation * random_normal(rng);
     studio.print_scale = [1.0 + variation.ruler_deviation / 1000.0 * random_normal(rng); 2];
-    let distance = true_displacement(gait).forward * cycles as f64;
+    let distance = true_displacement(gait).forward * cycle_count as f64;
     let start = [-distance / 2.0, 0.0, rng.f64() * 0.3 - 0.15];
-    let walk = Walk::new(gait, start, cycles, variation, rng);
-    analyse_and_measure(&film_walk(&studio, &walk, rate, rng), gait)
+    let walk = Walk::new(gait, start, cycle_count, variation, rng);
+    analyse_and_measure(&film_walk(&studio, &walk, picture_rate, rng), gait)
 }
 
 /// Measures a gait in a film; returns the result and the camera.
 fn analyse_and_measure(film: &Film, gait: &Gait) -> (MeasuredGait, CameraEstimate) {
-    let analysed_film = film.analyse(TRUE_SIZE).expect("the film can be analysed");
+    let analysed_film = film.analyse(FULL_SCALE).expect("the film can be analysed");
     let measured = analysed_film
         .measure(gait, None)
         .expect("the gait can be measured");
@@ -49,7 +49,7 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     let mut rng = Rng::with_seed(1);
     for name in ["walk", "left"] {
         let gait = paper_gait(name);
-        let (measured, sight) = measure_film(&gait, 5, 12.0, Variation::default(), &mut rng);
+        let (measured, camera) = measure_film(&gait, 5, 12.0, Variation::default(), &mut rng);
         assert!(measured.cycles.len() >= 3, "{:?}", measured.calm_times);
         for (i, (mean, truth)) in means_and_truths(&measured, &gait).into_iter().enumerate() {
             let max_error = [0.2, 0.2, 0.5][i];
@@ -57,14 +57,14 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
                 (mean.value - truth).abs() < max_error,
                 "{name} {i}: {mean:?} {truth}"
             );
-            assert!(mean.spread < max_error, "{name} {i}: {mean:?}");
+            assert!(mean.standard_deviation < max_error, "{name} {i}: {mean:?}");
         }
-        assert!(sight.corner_error < 0.1 && !sight.has_camera_moved);
-        assert!((sight.deck_height - TRUE_SIZE.deck_height).abs() < 3.0);
+        assert!(camera.corner_error < 0.1 && !camera.has_camera_moved);
+        assert!((camera.deck_height - FULL_SCALE.deck_height).abs() < 3.0);
     }
 }
 
-/// Reads a number from an environment variable; returns `default` if the variable is not set or is no number.
+/// Reads a number from an environment variable; returns `default` if the variable is not set or not a number.
 pub fn number_from_environment(name: &str, default: usize) -> usize {
     let value = std::env::var(name).ok().and_then(|word| word.parse().ok());
     value.unwrap_or(default)
@@ -77,7 +77,7 @@ fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
     [mean, (squares.sum::<f64>() / values.len() as f64).sqrt()]
 }
 
-/// Measures films of the gaits in turn, on all processor cores; each film has its own random numbers.
+/// Measures films on all processor cores, with the gaits in turn; each film has its own random numbers.
 fn measure_films(
     film_count: usize,
     gaits: &[Gait],
@@ -85,9 +85,9 @@ fn measure_films(
 ) -> Vec<[(Mean, f64); 3]> {
     let seed = number_from_environment("SEED", 1) as u64;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let measure_one = |film: usize| {
-        let gait = &gaits[film % gaits.len()];
-        let mut rng = Rng::with_seed(1_000_000 * seed + film as u64);
+    let measure_one = |index: usize| {
+        let gait = &gaits[index % gaits.len()];
+        let mut rng = Rng::with_seed(1_000_000 * seed + index as u64);
         means_and_truths(&measure(gait, &mut rng), gait)
     };
     std::thread::scope(|scope| {
@@ -102,14 +102,14 @@ fn measure_films(
     })
 }
 
-/// The names of a movement's parts.
-const PART_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
+/// The components of a movement, with their units.
+const COMPONENT_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
 /// Run by `make measure-test`. As with a real robot, the cycles differ by more than the error of a tag's place, and the
-/// user's ruler has an error, too.
+/// user's ruler is inexact, too.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
+fn in_short_films_93_to_97_percent_of_true_values_lie_within_two_standard_errors() {
     let film_count = number_from_environment("FILMS", 200);
     let variation = Variation {
         cycle_deviation: [0.2, 0.2, 0.3f64.to_radians()],
@@ -123,24 +123,24 @@ fn in_short_films_the_truth_lies_within_two_errors_in_93_to_97_percent() {
     println!(
         "{film_count} films of 6 cycles, of which 4 count; a cycle varies by 0.2 mm and 0.3 deg"
     );
-    let mut within_count = 0;
-    for (i, name) in PART_NAMES.into_iter().enumerate() {
+    let mut total_hit_count = 0;
+    for (i, name) in COMPONENT_NAMES.into_iter().enumerate() {
         let errors: Vec<f64> = results
             .iter()
-            .map(|parts| parts[i].0.value - parts[i].1)
+            .map(|components| components[i].0.value - components[i].1)
             .collect();
-        let hit_films = results.iter().filter(|parts| {
-            let (mean, truth) = parts[i];
-            (mean.value - truth).abs() < 2.0 * mean.error
+        let hit_films = results.iter().filter(|components| {
+            let (mean, truth) = components[i];
+            (mean.value - truth).abs() < 2.0 * mean.standard_error
         });
         let hit_count = hit_films.count();
-        within_count += hit_count;
+        total_hit_count += hit_count;
         let [bias, sd] = mean_and_deviation(&errors);
         let share = 100.0 * hit_count as f64 / film_count as f64;
         println!("{name:<10} within two errors {share:5.1} %, bias {bias:+.3}, sd {sd:.3}");
     }
     // Of 600 values, a share of 95 % has a standard deviation of 0.9 %.
-    let share = within_count as f64 / (3 * film_count) as f64;
+    let share = total_hit_count as f64 / (3 * film_count) as f64;
     println!("together   within two errors {:5.1} %", 100.0 * share);
     assert!((0.93..=0.97).contains(&share), "{share}");
 }
@@ -156,13 +156,17 @@ fn ten_cycles_at_720p_on_a_tripod_have_small_errors_and_little_spread() {
         measure_film(gait, 10, 30.0, no_variation, rng).0
     });
     println!("{film_count} films of 10 cycles, 1280 x 720, 30 pictures in a second");
-    for (i, name) in PART_NAMES.into_iter().enumerate() {
+    for (i, name) in COMPONENT_NAMES.into_iter().enumerate() {
         let errors: Vec<f64> = results
             .iter()
-            .map(|parts| parts[i].0.value - parts[i].1)
+            .map(|components| components[i].0.value - components[i].1)
             .collect();
-        let sds: Vec<f64> = results.iter().map(|parts| parts[i].0.spread).collect();
-        let ([bias, sd], [cycle_sd, _]) = (mean_and_deviation(&errors), mean_and_deviation(&sds));
+        let cycle_sds: Vec<f64> = results
+            .iter()
+            .map(|components| components[i].0.standard_deviation)
+            .collect();
+        let ([bias, sd], [cycle_sd, _]) =
+            (mean_and_deviation(&errors), mean_and_deviation(&cycle_sds));
         let max_error = errors
             .iter()
             .fold(0.0f64, |largest, error| largest.max(error.abs()));
@@ -209,34 +213,34 @@ fn a_hand_held_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_deg
     for (i, (mean, truth)) in means_and_truths(&measured, &gait).into_iter().enumerate() {
         println!(
             "in the hand, {}: off by {:+.3}, one cycle's sd {:.3}",
-            PART_NAMES[i],
+            COMPONENT_NAMES[i],
             mean.value - truth,
-            mean.spread
+            mean.standard_deviation
         );
         let max_error = [0.2, 0.2, 0.5][i];
         assert!(
-            (mean.value - truth).abs() < max_error && mean.spread < max_error,
+            (mean.value - truth).abs() < max_error && mean.standard_deviation < max_error,
             "{mean:?}"
         );
     }
 }
 
 #[test]
-fn tags_are_found_as_in_a_search_of_the_whole_picture_even_after_a_leap() {
+fn tags_are_found_as_in_a_search_of_the_whole_picture_even_after_a_jump() {
     let mut rng = Rng::with_seed(9);
     let mut studio = small_studio(9, 25.0);
     let mut film = Film::default();
     for i in 0..12 {
         let distance = f64::from(i) * 4.0;
         // In the middle of the film, someone moves and turns the robot. The camera is hand-held, too.
-        let robot = if i < 6 {
+        let pose = if i < 6 {
             [distance, 0.0, 0.0]
         } else {
             [-distance, 15.0, 0.4]
         };
         studio.aim = [2.0 * random_normal(&mut rng), 2.0 * random_normal(&mut rng)];
         let background = studio.background(&mut rng);
-        let picture = background.picture(f64::from(i), |_| robot, &mut rng);
+        let picture = background.picture(f64::from(i), |_| pose, &mut rng);
         let (mut found_tags, mut expected_tags) = (film.find_tags(&picture), read_tags(&picture));
         for tags in [&mut found_tags, &mut expected_tags] {
             tags.sort_by_key(|tag| tag.id);

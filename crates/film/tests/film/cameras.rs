@@ -6,7 +6,7 @@ use lizard_studio::render::{Studio, random_normal};
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
 use crate::accuracy::number_from_environment;
-use crate::studio::{TRUE_SIZE, film_robot};
+use crate::studio::{FULL_SCALE, film_robot};
 
 /// Number of cycles in a film.
 const CYCLE_COUNT: usize = 6;
@@ -19,7 +19,7 @@ struct Camera {
     studio: Studio,
     /// Pictures per second.
     picture_rate: f64,
-    /// Standard deviation of the camera's position in the hand, mm. That of its angles is a tenth of this number, deg.
+    /// Standard deviation of a hand-held camera's position, mm; that of its angles, deg, is a tenth of this number.
     shake: f64,
 }
 
@@ -37,13 +37,13 @@ fn good_studio() -> Studio {
 
 /// All cameras of the test.
 fn cameras() -> Vec<Camera> {
-    let camera = |name, change: &dyn Fn(&mut Studio), rate, shake| {
+    let camera = |name, change: &dyn Fn(&mut Studio), picture_rate, shake| {
         let mut studio = good_studio();
         change(&mut studio);
         Camera {
             name,
             studio,
-            picture_rate: rate,
+            picture_rate,
             shake,
         }
     };
@@ -90,7 +90,7 @@ fn cameras() -> Vec<Camera> {
 fn film_walk(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
     let Camera {
         studio,
-        picture_rate: rate,
+        picture_rate,
         shake,
         ..
     } = camera;
@@ -98,13 +98,13 @@ fn film_walk(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
         return film_robot(
             studio,
             walk.duration_s(),
-            *rate,
+            *picture_rate,
             |time| walk.pose_at(time),
             rng,
         );
     }
     let mut film = Film::default();
-    for i in 0..(walk.duration_s() * rate) as usize {
+    for i in 0..(walk.duration_s() * picture_rate) as usize {
         let mut shaken_studio = studio.clone();
         shaken_studio.camera_height += shake * random_normal(rng);
         shaken_studio.aim = shaken_studio
@@ -112,7 +112,7 @@ fn film_walk(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
             .map(|value| value + shake * random_normal(rng));
         shaken_studio.camera_tilt += shake / 10.0 * random_normal(rng);
         shaken_studio.camera_roll += shake / 10.0 * random_normal(rng);
-        let seconds = i as f64 / rate;
+        let seconds = i as f64 / picture_rate;
         let picture =
             shaken_studio
                 .background(rng)
@@ -141,22 +141,23 @@ fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() 
             &mut rng,
         );
         let measured = film_walk(&camera, &walk, &mut rng)
-            .measure(TRUE_SIZE, &gait)
+            .measure(FULL_SCALE, &gait)
             .unwrap_or_else(|trouble| panic!("{}: {trouble}", camera.name));
         let truth = true_displacement(&gait);
-        let parts = [
+        let components = [
             (measured.forward, truth.forward),
             (measured.left, truth.left),
             (measured.turn, truth.turn),
         ];
-        let [ahead, left, turn] = parts.map(|(mean, truth)| (mean.value - truth, mean.spread));
+        let [forward, left, turn] =
+            components.map(|(mean, truth)| (mean.value - truth, mean.standard_deviation));
         println!(
             "{:<42} {:+.3} {:.3}   {:+.3} {:.3}   {:+.3} {:.3}",
-            camera.name, ahead.0, ahead.1, left.0, left.1, turn.0, turn.1
+            camera.name, forward.0, forward.1, left.0, left.1, turn.0, turn.1
         );
-        for ((error, spread), max_error) in [ahead, left, turn].into_iter().zip(MAX_ERRORS) {
+        for ((error, cycle_sd), max_error) in [forward, left, turn].into_iter().zip(MAX_ERRORS) {
             assert!(
-                error.abs() < max_error && spread < max_error,
+                error.abs() < max_error && cycle_sd < max_error,
                 "{}",
                 camera.name
             );

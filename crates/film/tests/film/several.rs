@@ -1,11 +1,11 @@
 //! Films of several gaits with rests between them.
 
 use fastrand::Rng;
-use lizard_film::{AnalysedFilm, Gait, Likeness, MeasuredGait, Trouble, shortest_rest};
+use lizard_film::{AnalysedFilm, Gait, GaitMatch, MeasuredGait, Trouble, shortest_rest};
 use lizard_studio::render::Studio;
 use lizard_studio::walk::{Variation, WalkSeries, paper_gait, true_displacement};
 
-use crate::studio::{TRUE_SIZE, film_robot, small_studio};
+use crate::studio::{FULL_SCALE, film_robot, small_studio};
 
 /// Pictures per second.
 const PICTURE_RATE: f64 = 8.0;
@@ -16,20 +16,20 @@ const VARIATION: Variation = Variation {
     ruler_deviation: 0.0,
 };
 
-/// Films walks with rests of `rest` seconds between them, and finds the camera and the path.
+/// Films walks with rests of `rest` seconds between them, and analyses the film.
 fn film_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, WalkSeries) {
     let mut rng = Rng::with_seed(6);
     let series = WalkSeries::new([-60.0, 0.0, 0.0], walks, rest, VARIATION, &mut rng);
-    let robot = |time: f64| series.pose_at(time);
+    let pose_at = |time: f64| series.pose_at(time);
     let film = film_robot(
         &studio(),
         series.duration_s(),
         PICTURE_RATE,
-        robot,
+        pose_at,
         &mut rng,
     );
     (
-        film.analyse(TRUE_SIZE).expect("all tags are visible"),
+        film.analyse(FULL_SCALE).expect("all tags are visible"),
         series,
     )
 }
@@ -41,15 +41,15 @@ fn studio() -> Studio {
 /// Checks that a result agrees with the true movement of a gait.
 fn check_result(measured: &MeasuredGait, gait: &Gait) {
     let truth = true_displacement(gait);
-    let parts = [
+    let components = [
         (measured.forward, truth.forward, 0.4),
         (measured.left, truth.left, 0.4),
         (measured.turn, truth.turn, 0.6),
     ];
-    for (mean, truth, max_error) in parts {
+    for (mean, truth, max_error) in components {
         assert!((mean.value - truth).abs() < max_error, "{mean:?} {truth}");
         assert!(
-            (mean.value - truth).abs() < 4.0 * mean.error,
+            (mean.value - truth).abs() < 4.0 * mean.standard_error,
             "{mean:?} {truth}"
         );
     }
@@ -60,18 +60,21 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
     let names = ["walk", "left", "back", "trot"];
     let gaits = names.map(paper_gait);
     let order = [0, 1, 2, 0];
-    let (analysed_film, show) = film_walks(&order.map(|i| (&gaits[i], 4)), 1.6);
+    let (analysed_film, series) = film_walks(&order.map(|i| (&gaits[i], 4)), 1.6);
     let walks = analysed_film.walks(shortest_rest(&gaits));
     assert_eq!(walks.len(), order.len(), "{walks:?}");
-    for (found_span, true_span) in walks.iter().zip(show.movement_spans()) {
+    for (found_span, true_span) in walks.iter().zip(series.movement_spans()) {
         // A found walk includes parts of the rests around it, and misses at most one picture of the movement.
-        let early = true_span[0] - found_span[0];
-        let late = found_span[1] - true_span[1];
-        assert!((-0.2..1.2).contains(&early), "{found_span:?} {true_span:?}");
-        assert!((-0.2..1.2).contains(&late), "{found_span:?} {true_span:?}");
+        let lead = true_span[0] - found_span[0];
+        let lag = found_span[1] - true_span[1];
+        assert!((-0.2..1.2).contains(&lead), "{found_span:?} {true_span:?}");
+        assert!((-0.2..1.2).contains(&lag), "{found_span:?} {true_span:?}");
     }
     for (walk, i) in walks.iter().zip(order) {
-        assert_eq!(analysed_film.likeness(&gaits, *walk), Likeness::One(i));
+        assert_eq!(
+            analysed_film.match_gait(&gaits, *walk),
+            GaitMatch::Unique(i)
+        );
         let measured = analysed_film
             .measure(&gaits[i], Some(*walk))
             .expect("the gait can be measured");
@@ -89,7 +92,7 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
         combined.cycles,
         [&first.cycles[..], &second.cycles[..]].concat()
     );
-    // A gait that is not the one of this walk is refused.
+    // A walk of another gait is refused.
     let trouble = analysed_film
         .measure(&gaits[2], Some(walks[1]))
         .expect_err("the walk has the gait `left`");
@@ -97,20 +100,29 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
 }
 
 #[test]
-fn two_gaits_with_the_same_path_are_both_named() {
+fn two_gaits_with_the_same_path_are_both_reported() {
     let walk = paper_gait("walk");
     let gaits = [paper_gait("back"), walk.clone(), walk.clone()];
     let (analysed_film, _) = film_walks(&[(&walk, 4)], 1.0);
     let walks = analysed_film.walks(shortest_rest(&gaits));
-    let likeness = analysed_film.likeness(&gaits, walks[0]);
+    let gait_match = analysed_film.match_gait(&gaits, walks[0]);
     assert!(
-        matches!(likeness, Likeness::Two(1, 2) | Likeness::Two(2, 1)),
-        "{likeness:?}"
+        matches!(
+            gait_match,
+            GaitMatch::Ambiguous {
+                best: 1,
+                second_best: 2
+            } | GaitMatch::Ambiguous {
+                best: 2,
+                second_best: 1
+            }
+        ),
+        "{gait_match:?}"
     );
 }
 
 #[test]
-fn a_walk_in_slow_motion_or_of_an_unknown_gait_resembles_no_gait() {
+fn a_walk_in_slow_motion_or_of_an_unknown_gait_matches_no_gait() {
     let gaits = ["walk", "left", "back", "trot"].map(paper_gait);
     let slow = Gait {
         period: 2.0 * gaits[0].period,
@@ -119,14 +131,17 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_resembles_no_gait() {
     let (half_speed, _) = film_walks(&[(&slow, 3)], 1.0);
     let walks = half_speed.walks(2.0 * shortest_rest(&gaits));
     assert_eq!(
-        half_speed.likeness(&gaits, walks[0]),
-        Likeness::None(Trouble::AnotherPace { ratio: 2 })
+        half_speed.match_gait(&gaits, walks[0]),
+        GaitMatch::NoMatch(Trouble::AnotherPace { ratio: 2 })
     );
     let unknown = paper_gait("right");
     let (analysed_film, _) = film_walks(&[(&unknown, 4)], 1.0);
     let walks = analysed_film.walks(shortest_rest(&gaits));
-    let likeness = analysed_film.likeness(&gaits, walks[0]);
-    assert!(matches!(likeness, Likeness::None(_)), "{likeness:?}");
+    let gait_match = analysed_film.match_gait(&gaits, walks[0]);
+    assert!(
+        matches!(gait_match, GaitMatch::NoMatch(_)),
+        "{gait_match:?}"
+    );
 }
 
 #[test]
@@ -157,7 +172,7 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
 }
 
 #[test]
-fn a_short_turn_of_one_degree_during_a_rest_is_no_walk() {
+fn a_short_turn_of_one_degree_during_a_rest_is_not_a_walk() {
     let walk = paper_gait("walk");
     let extra_heading_at = |time: f64| {
         if (4.0..4.5).contains(&time) {
@@ -167,13 +182,13 @@ fn a_short_turn_of_one_degree_during_a_rest_is_no_walk() {
         }
     };
     let mut rng = Rng::with_seed(6);
-    let show = WalkSeries::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIATION, &mut rng);
-    let robot = |time: f64| {
-        let [x, y, heading] = show.pose_at(time);
+    let series = WalkSeries::new([-60.0, 0.0, 0.0], &[(&walk, 3)], 1.0, VARIATION, &mut rng);
+    let pose_at = |time: f64| {
+        let [x, y, heading] = series.pose_at(time);
         [x, y, heading + extra_heading_at(time - 2.0)]
     };
-    let film = film_robot(&studio(), 8.0, PICTURE_RATE, robot, &mut rng);
-    let analysed_film = film.analyse(TRUE_SIZE).expect("all tags are visible");
+    let film = film_robot(&studio(), 8.0, PICTURE_RATE, pose_at, &mut rng);
+    let analysed_film = film.analyse(FULL_SCALE).expect("all tags are visible");
     assert_eq!(analysed_film.walks(shortest_rest(&[walk])).len(), 1);
 }
 
@@ -197,8 +212,8 @@ fn a_deviation_from_the_predicted_path_is_found_at_its_phase() {
         let offset = (i as f64 / count as f64 - 0.6) / 0.12;
         place.left += 1.5 * (-offset.powi(2)).exp();
     }
-    let measure = |robot: &Gait| {
-        let (analysed_film, _) = film_walks(&[(robot, 6)], 1.0);
+    let measure = |gait: &Gait| {
+        let (analysed_film, _) = film_walks(&[(gait, 6)], 1.0);
         analysed_film
             .measure(&walk, None)
             .expect("the gait can be measured")

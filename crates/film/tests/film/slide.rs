@@ -12,9 +12,9 @@ const SETUP: Setup = Setup {
 };
 
 /// Films a board while it is lifted.
-fn film_board(board: &Board, studio: &Studio, rate: f64) -> Film {
+fn film_board(board: &Board, studio: &Studio, picture_rate: f64) -> Film {
     let mut film = Film::default();
-    board.take_pictures(studio, rate, |seconds, picture| {
+    board.take_pictures(studio, picture_rate, |seconds, picture| {
         film.add(seconds, picture)
             .expect("the picture fits the film");
     });
@@ -40,19 +40,21 @@ fn check_figure(figure: Figure, truth: f64, max_error: f64) {
 }
 
 #[test]
-fn a_slide_shows_static_and_sliding_friction_with_head_or_tail_first() {
-    for (head, resting, sliding) in [(8.0, 0.75, 0.68), (-175.0, 0.5, 0.5)] {
+fn a_slide_head_or_tail_first_shows_static_and_sliding_friction() {
+    for (head_direction_deg, static_friction, sliding_friction) in
+        [(8.0, 0.75, 0.68), (-175.0, 0.5, 0.5)]
+    {
         let board = Board {
-            static_friction: resting,
-            sliding_friction: sliding,
-            head_direction_deg: head,
+            static_friction,
+            sliding_friction,
+            head_direction_deg,
             ..EVEN_BOARD
         };
         let slide = measure_slide(&board).expect("the slide can be measured");
-        assert_eq!(slide.is_head_first, head == 8.0);
-        check_figure(slide.tilt, resting.atan().to_degrees(), 0.6);
-        check_figure(slide.static_friction, resting, 0.02);
-        check_figure(slide.sliding_friction, sliding, 0.02);
+        assert_eq!(slide.is_head_first, head_direction_deg == 8.0);
+        check_figure(slide.tilt, static_friction.atan().to_degrees(), 0.6);
+        check_figure(slide.static_friction, static_friction, 0.02);
+        check_figure(slide.sliding_friction, sliding_friction, 0.02);
     }
 }
 
@@ -114,15 +116,15 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
     );
 }
 
-/// Run by `make measure-test`. The board's level position is off by 0.3 deg, as with a spirit level.
+/// Run by `make measure-test`. The board's level position has a standard error of 0.3 deg, as with a spirit level.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn in_at_least_14_of_16_films_friction_lies_within_two_errors_of_the_truth() {
+fn in_at_least_14_of_16_films_the_true_friction_lies_within_two_standard_errors() {
     let mut rng = Rng::with_seed(12);
     let film_count = 16;
     let (mut static_hits, mut sliding_hits) = (0, 0);
     for i in 0..film_count {
-        let begin = 0.3 * random_normal(&mut rng);
+        let start_tilt_deg = 0.3 * random_normal(&mut rng);
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
         let friction = random_between(0.35, 0.8);
         let board = Board {
@@ -130,7 +132,7 @@ fn in_at_least_14_of_16_films_friction_lies_within_two_errors_of_the_truth() {
             sliding_friction: friction * random_between(0.8, 1.0),
             lift_deg_per_s: random_between(2.0, 9.0),
             head_direction_deg: 180.0 * (i % 2) as f64 + random_between(-12.0, 12.0),
-            start_tilt_deg: begin,
+            start_tilt_deg,
             ..EVEN_BOARD
         };
         let mut studio = small_studio();

@@ -5,13 +5,13 @@ use lizard_film::{Film, Setup};
 use lizard_studio::render::{Pose, Studio};
 use lizard_studio::walk::Walk;
 
-/// The setup for a sheet that is printed in true size.
-pub const TRUE_SIZE: Setup = Setup {
+/// The setup for a sheet that is printed at full scale (1:1).
+pub const FULL_SCALE: Setup = Setup {
     print_scale: 1.0,
     deck_height: 83.0,
 };
 
-/// A studio with a known camera and few pixels, whose picture the sheet fills.
+/// A studio with a fixed camera pose and a low resolution, in which the sheet fills the picture.
 pub fn small_studio(seed: u64, tilt: f64) -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(seed));
     (studio.size, studio.focal_length) = ([640, 360], 1.0);
@@ -25,30 +25,30 @@ pub fn small_studio(seed: u64, tilt: f64) -> Studio {
 }
 
 /// Films a walk with the camera on a tripod.
-pub fn film_walk(studio: &Studio, walk: &Walk, rate: f64, rng: &mut Rng) -> Film {
+pub fn film_walk(studio: &Studio, walk: &Walk, picture_rate: f64, rng: &mut Rng) -> Film {
     film_robot(
         studio,
         walk.duration_s(),
-        rate,
+        picture_rate,
         |time| walk.pose_at(time),
         rng,
     )
 }
 
-/// Films a robot whose place at any time is given by `robot`.
+/// Films a robot whose pose at any time is given by `pose_at`.
 pub fn film_robot(
     studio: &Studio,
-    seconds: f64,
-    rate: f64,
-    robot: impl Fn(f64) -> Pose,
+    duration_s: f64,
+    picture_rate: f64,
+    pose_at: impl Fn(f64) -> Pose,
     rng: &mut Rng,
 ) -> Film {
     let background = studio.background(rng);
     let mut film = Film::default();
-    for i in 0..(seconds * rate) as usize {
-        let seconds = i as f64 / rate;
-        let picture = background.picture(seconds, &robot, rng);
-        film.add(seconds, &picture)
+    for i in 0..(duration_s * picture_rate) as usize {
+        let time_s = i as f64 / picture_rate;
+        let picture = background.picture(time_s, &pose_at, rng);
+        film.add(time_s, &picture)
             .expect("the picture fits the film");
     }
     film

@@ -5,7 +5,7 @@ use lizard_film::{Film, Gait, MeasuredGait, Picture, Setup, Trouble};
 use lizard_studio::render::{Pose, Studio};
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
-use crate::studio::{TRUE_SIZE, film_robot, small_studio};
+use crate::studio::{FULL_SCALE, film_robot, small_studio};
 
 /// Pictures per second: a low rate suffices, since most tests check only the reason.
 const PICTURE_RATE: f64 = 8.0;
@@ -46,16 +46,16 @@ fn trouble_of(studio: &Studio, setup: Setup) -> Trouble {
 }
 
 #[test]
-fn without_a_tag_in_any_picture_there_is_nothing_to_measure() {
+fn a_film_without_pictures_or_tags_is_refused() {
     assert_eq!(
-        Film::default().measure(TRUE_SIZE, &paper_gait("walk")),
+        Film::default().measure(FULL_SCALE, &paper_gait("walk")),
         Err(Trouble::NoPictures)
     );
     let mut film = Film::default();
     let grey = Picture::new(320, 240, vec![128; 320 * 240]).expect("the picture is complete");
     film.add(0.0, &grey).expect("the picture fits the film");
     assert_eq!(
-        film.measure(TRUE_SIZE, &paper_gait("walk")),
+        film.measure(FULL_SCALE, &paper_gait("walk")),
         Err(Trouble::NoTag)
     );
 }
@@ -65,12 +65,12 @@ fn a_tag_that_is_always_covered_is_named() {
     let mut studio = studio();
     studio.hidden_tags = vec![2];
     assert_eq!(
-        trouble_of(&studio, TRUE_SIZE),
+        trouble_of(&studio, FULL_SCALE),
         Trouble::NoFloorTag { id: 2 }
     );
     studio.hidden_tags = vec![4];
     assert!(matches!(
-        trouble_of(&studio, TRUE_SIZE),
+        trouble_of(&studio, FULL_SCALE),
         Trouble::DeckTagTooRare {
             visible_count: 0,
             ..
@@ -84,7 +84,7 @@ fn a_tag_with_a_cable_over_its_corner_counts_as_missing() {
     let [x, y, _] = studio.strips[0];
     studio.discs = vec![[x + 128.0, y + 22.0, 10.0, 40.0]];
     assert_eq!(
-        trouble_of(&studio, TRUE_SIZE),
+        trouble_of(&studio, FULL_SCALE),
         Trouble::NoFloorTag { id: 1 }
     );
 }
@@ -93,16 +93,16 @@ fn a_tag_with_a_cable_over_its_corner_counts_as_missing() {
 fn in_the_dark_and_in_the_glare_no_tag_is_found() {
     let mut studio = studio();
     studio.light = 0.05;
-    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::NoTag);
+    assert_eq!(trouble_of(&studio, FULL_SCALE), Trouble::NoTag);
     studio.light = 10.0;
-    assert_eq!(trouble_of(&studio, TRUE_SIZE), Trouble::NoTag);
+    assert_eq!(trouble_of(&studio, FULL_SCALE), Trouble::NoTag);
 }
 
 #[test]
 fn a_card_whose_arrow_points_to_the_tail_is_reported_as_another_gait() {
     let gait = paper_gait("walk");
     let walk = centred_walk(&gait, 5);
-    let turned_robot = |time| {
+    let turned_pose_at = |time| {
         let [x, y, heading] = walk.pose_at(time);
         [x, y, heading + std::f64::consts::PI]
     };
@@ -110,11 +110,11 @@ fn a_card_whose_arrow_points_to_the_tail_is_reported_as_another_gait() {
         &studio(),
         walk.duration_s(),
         PICTURE_RATE,
-        turned_robot,
+        turned_pose_at,
         &mut Rng::with_seed(2),
     );
     let trouble = film
-        .measure(TRUE_SIZE, &gait)
+        .measure(FULL_SCALE, &gait)
         .expect_err("the robot walks backward");
     assert!(matches!(trouble, Trouble::NotThisGait { .. }), "{trouble}");
     assert!(trouble.to_string().contains("arrow"), "{trouble}");
@@ -137,8 +137,8 @@ fn pictures_of_another_size_and_times_that_do_not_increase_are_refused() {
     );
 }
 
-/// Films a walk with a camera that is moved once in the middle. In the second half, the tags `hidden` are covered.
-fn film_with_moved_camera(hidden: Vec<usize>) -> Film {
+/// Films a walk with a camera that is moved once, in the middle. In the second half, the tags `hidden_tags` are covered.
+fn film_with_moved_camera(hidden_tags: Vec<usize>) -> Film {
     let gait = paper_gait("walk");
     let walk = centred_walk(&gait, 5);
     let mut rng = Rng::with_seed(3);
@@ -146,7 +146,7 @@ fn film_with_moved_camera(hidden: Vec<usize>) -> Film {
     let first = studio();
     let mut second = first.clone();
     (second.camera_tilt, second.aim[0], second.hidden_tags) =
-        (first.camera_tilt + 1.0, first.aim[0] + 12.0, hidden);
+        (first.camera_tilt + 1.0, first.aim[0] + 12.0, hidden_tags);
     let backgrounds = [first, second].map(|studio| studio.background(&mut rng));
     let count = (walk.duration_s() * PICTURE_RATE) as usize;
     for i in 0..count {
@@ -163,7 +163,7 @@ fn film_with_moved_camera(hidden: Vec<usize>) -> Film {
 fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     let gait = paper_gait("walk");
     let analysed_film = film_with_moved_camera(Vec::new())
-        .analyse(TRUE_SIZE)
+        .analyse(FULL_SCALE)
         .expect("all tags are visible");
     assert!(analysed_film.camera.has_camera_moved);
     let measured = analysed_film
@@ -172,7 +172,7 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
     let error = measured.forward.value - true_displacement(&gait).forward;
     assert!(error.abs() < 0.3, "{:?}", measured.forward);
     let trouble = film_with_moved_camera(vec![1])
-        .measure(TRUE_SIZE, &gait)
+        .measure(FULL_SCALE, &gait)
         .expect_err("a tag is hidden");
     assert!(
         matches!(trouble, Trouble::CameraMoved { pictures } if pictures > 15),
@@ -203,7 +203,7 @@ fn a_tag_that_is_covered_for_a_while_does_no_harm_if_the_camera_stands_still() {
             .expect("the picture fits the film");
     }
     let measured = film
-        .measure(TRUE_SIZE, &gait)
+        .measure(FULL_SCALE, &gait)
         .expect("the gait can be measured");
     check_distance(&measured, &gait);
 }
@@ -214,7 +214,7 @@ fn a_sheet_printed_too_small_gives_the_true_distance_if_its_ruler_is_measured() 
     studio.print_scale = [0.972; 2];
     let setup = Setup {
         print_scale: 0.972,
-        ..TRUE_SIZE
+        ..FULL_SCALE
     };
     let gait = paper_gait("walk");
     let measured = film_five_cycles(&studio)
@@ -227,7 +227,7 @@ fn a_sheet_printed_too_small_gives_the_true_distance_if_its_ruler_is_measured() 
 fn tags_that_were_cut_apart_and_moved_are_refused() {
     let mut studio = studio();
     studio.tag_distance_factor = 0.95;
-    let trouble = trouble_of(&studio, TRUE_SIZE);
+    let trouble = trouble_of(&studio, FULL_SCALE);
     assert!(
         matches!(trouble, Trouble::WrongTagSize { edge } if edge > 51.5)
             || matches!(trouble, Trouble::NotThisSheet { .. }),
@@ -243,7 +243,7 @@ fn a_card_at_another_height_than_given_is_noticed_by_its_size() {
     studio.deck_tag_height = 83.0;
     let wrong_setup = Setup {
         deck_height: 40.0,
-        ..TRUE_SIZE
+        ..FULL_SCALE
     };
     let trouble = trouble_of(&studio, wrong_setup);
     assert!(
@@ -252,15 +252,21 @@ fn a_card_at_another_height_than_given_is_noticed_by_its_size() {
     );
 }
 
-/// The reason why a film of a robot whose place is given by `robot` cannot be measured.
-fn trouble_of_robot(robot: impl Fn(f64) -> Pose) -> Trouble {
-    let film = film_robot(&studio(), 4.0, PICTURE_RATE, robot, &mut Rng::with_seed(2));
-    film.measure(TRUE_SIZE, &paper_gait("walk"))
+/// The reason why a film of a robot whose pose is given by `pose_at` cannot be measured.
+fn trouble_of_robot(pose_at: impl Fn(f64) -> Pose) -> Trouble {
+    let film = film_robot(
+        &studio(),
+        4.0,
+        PICTURE_RATE,
+        pose_at,
+        &mut Rng::with_seed(2),
+    );
+    film.measure(FULL_SCALE, &paper_gait("walk"))
         .expect_err("the film shows no walk")
 }
 
 #[test]
-fn a_robot_that_stands_has_not_moved() {
+fn a_robot_that_stands_still_is_reported_as_not_moved() {
     let trouble = trouble_of_robot(|_| [0.0; 3]);
     assert!(
         matches!(trouble, Trouble::NotMoved { distance, .. } if distance < 1.0),
@@ -273,16 +279,16 @@ fn a_robot_too_far_from_the_strips_is_refused() {
     let mut studio = studio();
     (studio.size, studio.aim) = ([1280, 720], [150.0, 0.0]);
     studio.camera_height = 1000.0;
-    let far_robot = |_: f64| [430.0, 0.0, 0.0];
+    let far_pose_at = |_: f64| [430.0, 0.0, 0.0];
     let film = film_robot(
         &studio,
         1.0,
         PICTURE_RATE,
-        far_robot,
+        far_pose_at,
         &mut Rng::with_seed(2),
     );
     let trouble = film
-        .measure(TRUE_SIZE, &paper_gait("walk"))
+        .measure(FULL_SCALE, &paper_gait("walk"))
         .expect_err("the robot is too far away");
     assert!(
         matches!(trouble, Trouble::TooFarFromStrips { distance, .. } if distance > 400.0),
@@ -312,16 +318,16 @@ fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
             path: gait.path.clone(),
         };
         let walk = centred_walk(&slow, 3);
-        let robot = |time: f64| walk.pose_at(time);
+        let pose_at = |time: f64| walk.pose_at(time);
         let film = film_robot(
             &studio(),
             walk.duration_s(),
             5.0,
-            robot,
+            pose_at,
             &mut Rng::with_seed(2),
         );
         let trouble = film
-            .measure(TRUE_SIZE, &gait)
+            .measure(FULL_SCALE, &gait)
             .expect_err("the cycles are too slow");
         assert_eq!(trouble, Trouble::AnotherPace { ratio: multiple });
     }
@@ -336,19 +342,19 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_distance_per_cycle_and_its
             path: gait.path.clone(),
         };
         let walk = centred_walk(&stretched, 6);
-        let robot = |time: f64| walk.pose_at(time);
+        let pose_at = |time: f64| walk.pose_at(time);
         let film = film_robot(
             &studio(),
             walk.duration_s(),
             12.0,
-            robot,
+            pose_at,
             &mut Rng::with_seed(2),
         );
         let measured = film
-            .measure(TRUE_SIZE, &gait)
+            .measure(FULL_SCALE, &gait)
             .expect("the gait can be measured");
         check_distance(&measured, &gait);
-        let period_ratio = measured.period[0] / stretched.period;
+        let period_ratio = measured.period.value / stretched.period;
         assert!(
             (period_ratio - 1.0).abs() < 0.005,
             "{rate_error}: {period_ratio}"
@@ -356,7 +362,7 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_distance_per_cycle_and_its
     }
 }
 
-/// A picture of the sheet and the card; to its right, a second copy of it if `has_second_copy`, else an empty area.
+/// A picture of the sheet and the card, with a second copy of them to the right if `has_second_copy`, else an empty area.
 fn picture_with_copy(has_second_copy: bool) -> Picture {
     let mut rng = Rng::with_seed(2);
     let picture = studio()
@@ -406,7 +412,7 @@ fn two_cycles_are_too_few() {
         &mut Rng::with_seed(2),
     );
     let trouble = film
-        .measure(TRUE_SIZE, &gait)
+        .measure(FULL_SCALE, &gait)
         .expect_err("the film has too few cycles");
     assert!(
         matches!(trouble, Trouble::TooShort { cycles, .. } if (1.0..2.5).contains(&cycles)),

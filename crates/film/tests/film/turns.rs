@@ -15,7 +15,7 @@ const JIG: Jig = Jig {
 /// The load's torque as a share of the stall torque: 19.6 N mm of 176.5.
 const LOAD_SHARE: f64 = 0.111;
 
-/// A camera that takes no pictures, but adds errors to angles.
+/// A simulated camera that takes no pictures, but adds errors to angles.
 #[derive(Clone, Copy)]
 struct AngleCamera {
     /// Pictures per second.
@@ -28,9 +28,9 @@ struct AngleCamera {
 
 impl AngleCamera {
     /// A phone in daylight at a number of pictures per second.
-    fn phone(rate: f64) -> Self {
+    fn phone(picture_rate: f64) -> Self {
         Self {
-            picture_rate: rate,
+            picture_rate,
             exposure_seconds: 1.0 / 120.0,
             angle_sigma: 0.15,
         }
@@ -78,7 +78,7 @@ fn random_servo(rng: &mut Rng) -> Servo {
     }
 }
 
-/// The share of figures within two errors of their true values, and the mean error.
+/// The share of figures within two standard errors of their true values, and the mean standard error.
 fn hit_share_and_mean_error(figures: &[(Figure, f64)]) -> [f64; 2] {
     let hits = figures
         .iter()
@@ -89,14 +89,14 @@ fn hit_share_and_mean_error(figures: &[(Figure, f64)]) -> [f64; 2] {
 }
 
 /// The true width of the dead band that is nearest to the measured one, deg: any value between the controller's own
-/// width and that plus the effect of the gears' friction is right.
+/// width and that plus the effect of the gears' friction is correct.
 fn nearest_dead_band(servo: &Servo, found_width: f64) -> f64 {
     let friction = 2.0 * FRICTION_SHARE * FULL_TORQUE_DEG;
     found_width.clamp(servo.dead_band, servo.dead_band + friction)
 }
 
 #[test]
-fn over_90_percent_of_figures_lie_within_two_errors_at_60_to_240_pictures_a_second() {
+fn over_90_percent_of_figures_lie_within_two_standard_errors_at_60_to_240_pictures_a_second() {
     let mut rng = Rng::with_seed(1);
     for picture_rate in [60.0, 120.0, 240.0] {
         let mut figures: [Vec<(Figure, f64)>; 4] = Default::default();
@@ -123,7 +123,8 @@ fn over_90_percent_of_figures_lie_within_two_errors_at_60_to_240_pictures_a_seco
 }
 
 #[test]
-fn a_known_load_gives_the_stall_torque_within_two_errors_in_over_90_percent_of_film_pairs() {
+fn a_known_load_gives_the_stall_torque_within_two_standard_errors_in_over_90_percent_of_film_pairs()
+{
     let mut rng = Rng::with_seed(2);
     let camera = AngleCamera::phone(120.0);
     let film_pair = |rng: &mut Rng| {
@@ -226,8 +227,8 @@ fn a_horn_that_does_not_follow_all_steps_is_refused_with_the_reason() {
     );
     let swaying_path = path_of(&mut |seconds| seconds.sin());
     assert_eq!(trouble_of(&swaying_path), ServoTrouble::StepsNotMatched);
-    let whole_path = AngleCamera::phone(60.0).path(&Servo::default(), &mut rng);
-    let trouble = trouble_of(&whole_path[..whole_path.len() / 2]);
+    let complete_path = AngleCamera::phone(60.0).path(&Servo::default(), &mut rng);
+    let trouble = trouble_of(&complete_path[..complete_path.len() / 2]);
     assert!(
         matches!(trouble, ServoTrouble::TooShort { .. }),
         "{trouble}"
@@ -272,7 +273,7 @@ fn a_slew_limit_below_the_rate_of_the_servo_is_not_taken_for_its_rate() {
 /// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn in_at_least_85_percent_of_rendered_films_the_truth_lies_within_two_errors() {
+fn in_at_least_85_percent_of_rendered_films_the_true_value_lies_within_two_standard_errors() {
     let mut rng = Rng::with_seed(10);
     let setup = Setup {
         print_scale: 1.0,
