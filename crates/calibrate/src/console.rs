@@ -1,4 +1,4 @@
-//! The robot's console, line by line.
+//! The robot's console: lines that are sent, and their replies.
 
 use std::time::Duration;
 
@@ -7,14 +7,14 @@ use std::time::Duration;
 pub struct Reply {
     /// The `#` lines before the answer.
     pub notes: Vec<String>,
-    /// `ok ...` or `err ...`.
+    /// The answer: `ok ...` or `err ...`.
     pub answer: String,
 }
 
 /// A connection to a robot's console. All times are the robot's: a simulated robot may run slower or faster than this
 /// machine.
 pub trait Console {
-    /// The error if no reply comes.
+    /// The error if no reply arrives.
     type Error;
 
     /// Sends a line and waits for the reply.
@@ -69,7 +69,7 @@ pub enum ConsoleError<E> {
     /// The reply is not `ok`.
     #[error(transparent)]
     Reply(#[from] BadReply),
-    /// No reply came: the connection's error.
+    /// The connection failed before a reply arrived.
     #[error("{0}")]
     Link(E),
 }

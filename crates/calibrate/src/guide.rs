@@ -20,11 +20,11 @@ pub const SCALE_TURNS_DEG: [f64; 8] = [30.0, -30.0, 20.0, -20.0, 15.0, -15.0, 10
 #[derive(Debug)]
 pub struct Guide<C> {
     console: C,
-    /// The settings at the beginning, or after the last save.
+    /// The settings to which the guide returns: those at the start, or of the last save.
     saved: Calibration,
     /// The settings that are active now.
     active: Calibration,
-    /// The neutral angles; `None` before the first `stand`.
+    /// The neutral angles, degrees; `None` before the first `stand`.
     neutral: Option<[f64; 4]>,
     /// True after a line without an answer: the robot's settings may differ from `active`.
     may_be_outdated: bool,
@@ -32,6 +32,7 @@ pub struct Guide<C> {
     unanswered_save: Option<Calibration>,
 }
 
+/// The result of a line or of a step.
 type Result<T, C> = std::result::Result<T, ConsoleError<<C as Console>::Error>>;
 
 impl<C: Console> Guide<C> {
@@ -77,7 +78,7 @@ impl<C: Console> Guide<C> {
         Ok(neutral)
     }
 
-    /// Ends the pulses, so that no servo starts when the servos get power.
+    /// Stops the pulses, so that no servo moves when the servos get power.
     ///
     /// # Errors
     /// Fails if the connection breaks.
@@ -129,21 +130,21 @@ impl<C: Console> Guide<C> {
         Ok(pose[servo])
     }
 
-    /// Reverses the sign of a servo. To keep its neutral pulse, its trim is reversed, too.
+    /// Reverses the sign of a servo. To keep its neutral pulse width, its trim is reversed, too.
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
     pub async fn reverse(&mut self, servo: usize) -> Result<(), C> {
         self.stand().await?;
-        let dir_line_of =
+        let sign_line_of =
             |servo: usize, settings: ServoSettings| format!("dir {} {}", servo + 1, settings.dir);
         self.refresh().await?;
         let new = self.active.servos[servo].reversed();
-        self.set_with_trim(servo, new, dir_line_of).await?;
+        self.set_with_trim(servo, new, sign_line_of).await?;
         wait_until_still(&mut self.console).await.map(drop)
     }
 
-    /// Changes a servo's trim by this angle.
+    /// Changes a servo's trim by an angle.
     ///
     /// # Errors
     /// Fails if the trim would be too large.
@@ -156,7 +157,7 @@ impl<C: Console> Guide<C> {
         Ok(())
     }
 
-    /// Sets a servo's scale, us per degree. To keep its neutral pulse, its trim is converted, too.
+    /// Sets a servo's scale, us per degree. To keep its neutral pulse width, its trim is converted, too.
     ///
     /// # Errors
     /// Fails if this scale or the converted trim is refused.
@@ -201,8 +202,8 @@ impl<C: Console> Guide<C> {
         Ok(())
     }
 
-    /// Starts a test walk: `walk` if the robot has it, else its first gait besides `stand`. Returns the gait's name, or
-    /// `None` if `stand` is the only gait.
+    /// Starts a test walk: `walk` if the robot has it, otherwise its first gait other than `stand`. Returns the gait's
+    /// name, or `None` if `stand` is the only gait.
     ///
     /// # Errors
     /// Fails if the robot cannot walk now.
@@ -235,7 +236,7 @@ impl<C: Console> Guide<C> {
         Ok(())
     }
 
-    /// Makes the robot stand, and restores the settings of the beginning or of the last save; returns true if other
+    /// Makes the robot stand, and restores the settings at the start or of the last save; returns true if other
     /// settings were active. If a `save` was not answered, first makes the board load its saved settings.
     ///
     /// # Errors
@@ -305,6 +306,7 @@ impl<C: Console> Guide<C> {
         Ok(())
     }
 
+    /// Sends a line, and notes if it was not answered.
     async fn send_line(&mut self, line: &str) -> Result<Reply, C> {
         let result = send_command(&mut self.console, line).await;
         self.may_be_outdated |= matches!(&result, Err(error) if !error.is_refusal());
@@ -333,6 +335,7 @@ async fn load_and_compare<C: Console>(
     }
 }
 
+/// The line that sets a servo's trim.
 fn trim_line_of(servo: usize, settings: ServoSettings) -> String {
     format!("trim {} {:.2}", servo + 1, settings.trim)
 }

@@ -1,11 +1,11 @@
 //! The calibration of a robot over its console: the lines that each step sends, and their order.
 //!
 //! A longer pulse turns a servo in one direction or the other, by more or less than its data sheet says, and a horn
-//! fits only at the teeth of its spline. So a person watches the robot while a single servo turns, and enters the
+//! fits its spline only at certain angles. So a person watches the robot while a single servo turns, and enters the
 //! observation. [`Guide`] makes the movements, and computes the settings from the answers. Nothing is saved before
 //! [`Guide::save`], and [`Guide::restore`] returns to the saved settings.
 //!
-//! The crate has no serial port, screen or clock: a [`Console`] is a connection of this machine or of a browser. Its
+//! The crate has no serial port, screen or clock: this machine or a browser provides the connection, a [`Console`]. Its
 //! functions are `async`, since a browser cannot block; for a console that blocks, any executor will do.
 //!
 //! # When not to use it

@@ -8,7 +8,7 @@ use crate::console::{BadReply, Console, ConsoleError, send_command};
 
 /// Interval between two `status` commands.
 const STATUS_INTERVAL: Duration = Duration::from_millis(50);
-/// Largest number of `status` commands: a wait ends after five seconds and the time of the answers.
+/// Largest number of `status` commands: a wait ends after five seconds, plus the time that the answers take.
 const MAX_STATUS_COUNT: u32 = 100;
 
 /// Waits until the robot stands still or the wait is too long, and returns its pose, degrees.
@@ -23,7 +23,7 @@ pub(crate) async fn wait_until_still<C: Console>(
     for _ in 1..MAX_STATUS_COUNT {
         let (frames, pose) = ask_pose(console).await?;
         match still_since {
-            // After a restart, the count of frames begins at 0 again.
+            // After a restart, the count of frames starts at 0 again.
             Some((first_frame, first_pose)) if first_pose == pose && frames >= first_frame => {
                 if frames - first_frame >= STILL_FRAMES {
                     return Ok(pose);
@@ -39,7 +39,7 @@ pub(crate) async fn wait_until_still<C: Console>(
     Ok(ask_pose(console).await?.1)
 }
 
-/// Returns the frames since power-on, and the pose.
+/// Asks for the robot's status; returns the number of frames since its start, and its pose, degrees.
 async fn ask_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), ConsoleError<C::Error>> {
     let reply = send_command(console, "status").await?;
     let status = Status::parse(&reply.answer);
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_stands_still_once_its_pose_has_not_changed_for_a_while_also_after_a_restart() {
+    fn a_robot_stands_still_once_its_pose_has_not_changed_for_a_while_even_after_a_restart() {
         for (states, expected) in [
             (vec![(100, 1.0), (112, 1.0), (200, 2.0)], 1.0),
             (
@@ -97,7 +97,7 @@ mod tests {
                 ],
                 2.0,
             ),
-            // The count of frames stops, so the robot never stands still long enough.
+            // The count of frames stops, so the wait ends at its limit.
             (vec![(100, 1.0), (105, 1.0)], 1.0),
         ] {
             let pose = pollster::block_on(wait_until_still(&mut ScriptedStatus(states)));

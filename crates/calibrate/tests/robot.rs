@@ -21,14 +21,14 @@ struct DirectConsole(RunningRobot);
 
 impl DirectConsole {
     fn power_on(robot_toml: &str) -> Self {
-        let robot = Robot::parse(robot_toml).expect("a valid robot.toml");
+        let robot = Robot::parse(robot_toml).expect("robot.toml is valid");
         let mut running = RunningRobot::power_on(*robot.firmware());
         running.run_frames(10);
         Self(running)
     }
 
     fn calibration(&mut self) -> Calibration {
-        block_on(read_settings(self)).expect("an answer")
+        block_on(read_settings(self)).expect("the robot answers")
     }
 }
 
@@ -42,7 +42,10 @@ impl Console for DirectConsole {
         while !notes.iter().any(is_answer) {
             notes.extend(self.0.run_frames(1));
         }
-        let index = notes.iter().position(is_answer).expect("an answer");
+        let index = notes
+            .iter()
+            .position(is_answer)
+            .expect("an answer has arrived");
         let answer = notes.remove(index);
         notes.truncate(index);
         Ok(Reply { notes, answer })
@@ -84,7 +87,7 @@ fn settings_that_were_sent_are_read_back() {
     calibration.servos[0].limit = [70.0, -150.0];
     calibration.boot = "arc left".to_owned();
     calibration.deadman = 1500;
-    block_on(send_settings(&mut robot, &calibration)).expect("no refusal");
+    block_on(send_settings(&mut robot, &calibration)).expect("the robot accepts the settings");
     let read_back = robot.calibration();
     assert!(calibration.is_equivalent_to(&read_back), "{read_back:?}");
     assert!(!calibration.is_equivalent_to(&factory_settings()));
@@ -101,7 +104,7 @@ fn a_setting_that_the_current_ones_forbid_is_retried_after_the_others() {
     scaled.servos[0].scale = 16.0;
     trimmed.servos[0].trim = 15.0;
     for calibration in [&trimmed, &scaled, &trimmed] {
-        block_on(send_settings(&mut robot, calibration)).expect("no refusal");
+        block_on(send_settings(&mut robot, calibration)).expect("the robot accepts the settings");
         let read_back = robot.calibration();
         assert!(calibration.is_equivalent_to(&read_back), "{read_back:?}");
     }
@@ -109,12 +112,13 @@ fn a_setting_that_the_current_ones_forbid_is_retried_after_the_others() {
 
 #[test]
 fn settings_that_do_not_suit_the_gaits_are_refused_and_the_old_ones_are_restored() {
-    let mut guide = block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("an answer");
-    block_on(guide.trim(2, 1.5)).expect("no refusal");
+    let mut guide =
+        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
+    block_on(guide.trim(2, 1.5)).expect("the robot accepts the settings");
     let mut calibration = factory_settings();
     calibration.servos[0].trim = 4.0;
     calibration.servos[1].limit = [40.0, 43.0];
-    let error = block_on(guide.replace(&calibration)).expect_err("too narrow");
+    let error = block_on(guide.replace(&calibration)).expect_err("the travel is too narrow");
     assert!(matches!(error, SendError::Refused(_)), "{error:?}");
     let message = error.to_string();
     assert!(
@@ -129,8 +133,9 @@ fn settings_that_do_not_suit_the_gaits_are_refused_and_the_old_ones_are_restored
 
 #[test]
 fn a_scale_whose_trim_is_refused_is_undone() {
-    let mut guide = block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("an answer");
-    block_on(guide.trim(0, 19.0)).expect("no refusal");
+    let mut guide =
+        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
+    block_on(guide.trim(0, 19.0)).expect("the robot accepts the settings");
     // The horn keeps its tooth, so half the scale needs twice the trim, which exceeds the largest trim.
     let refusal = block_on(guide.set_scale(0, 5.0)).expect_err("the trim is too large");
     assert!(
@@ -146,34 +151,38 @@ fn a_scale_whose_trim_is_refused_is_undone() {
 
 #[test]
 fn a_scale_is_measured_by_a_turn_as_large_as_the_robot_accepts() {
-    let mut guide = block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("an answer");
-    let commanded_deg = block_on(guide.turn(0, &SCALE_TURNS_DEG)).expect("an accepted turn");
+    let mut guide =
+        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
+    let commanded_deg =
+        block_on(guide.turn(0, &SCALE_TURNS_DEG)).expect("the robot accepts a turn");
     let pose = guide.console().0.status_value("pose");
     let a1: f64 = pose
         .split(',')
         .next()
         .and_then(|angle| angle.parse().ok())
-        .expect("a pose");
+        .expect("the pose has an angle of A1");
     assert!(
         (a1 - 138.59 - commanded_deg).abs() < 0.02,
         "{pose} after {commanded_deg}"
     );
     assert!(commanded_deg.abs() >= 20.0, "{commanded_deg}");
     // A servo that turns 10 % too far needs a scale that is smaller by the factor 1.1.
-    let scale =
-        block_on(guide.scale_by_turn(0, commanded_deg, commanded_deg * 1.1)).expect("no refusal");
+    let scale = block_on(guide.scale_by_turn(0, commanded_deg, commanded_deg * 1.1))
+        .expect("the robot accepts the settings");
     assert_eq!(scale, 9.09);
     assert_eq!(guide.console().calibration().servos[0].scale, 9.09);
 }
 
 #[test]
-fn angles_are_those_of_the_console_and_the_first_refusal_is_the_reported_one() {
-    let mut guide = block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("an answer");
-    let angle = block_on(guide.point(0, 140.004 - 360.0)).expect("no refusal");
+fn angles_are_rounded_as_on_the_console_and_the_first_refusal_is_reported() {
+    let mut guide =
+        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
+    let angle = block_on(guide.point(0, 140.004 - 360.0)).expect("the robot accepts the settings");
     assert_eq!(angle, 140.0);
-    block_on(guide.limit(0, [-300.0, 580.0])).expect("no refusal");
+    block_on(guide.limit(0, [-300.0, 580.0])).expect("the robot accepts the settings");
     assert_eq!(guide.calibration().servos[0].limit, [60.0, 220.0]);
-    let refusal = block_on(guide.turn(0, &[170.0, 180.0])).expect_err("too far");
+    let refusal =
+        block_on(guide.turn(0, &[170.0, 180.0])).expect_err("the angles are out of reach");
     assert!(refusal.to_string().contains("`pose 308.59 "), "{refusal}");
 }
 
@@ -195,12 +204,13 @@ fn the_test_walk_is_walk_or_the_first_gait_that_the_robot_has() {
         (4, Some("trot")),
         (removable_gaits.len(), None),
     ] {
-        let removed = &removable_gaits[..count];
-        let text = removed
+        let removed_gaits = &removable_gaits[..count];
+        let robot_toml = removed_gaits
             .iter()
             .fold(PAPER.to_owned(), |text, name| without_gait(&text, name));
-        let mut guide = block_on(Guide::begin(DirectConsole::power_on(&text))).expect("an answer");
-        let gait = block_on(guide.walk()).expect("no refusal");
+        let mut guide = block_on(Guide::begin(DirectConsole::power_on(&robot_toml)))
+            .expect("the robot answers");
+        let gait = block_on(guide.walk()).expect("the robot accepts the settings");
         assert_eq!(gait.as_deref(), expected);
         let gait = guide.console().0.status_value("gait");
         assert_eq!(gait, expected.unwrap_or("stand"));
@@ -210,11 +220,13 @@ fn the_test_walk_is_walk_or_the_first_gait_that_the_robot_has() {
 /// The part of an exchange that is lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Loss {
+    /// The robot does not receive the line.
     Line,
+    /// The robot executes the line, but its answer does not arrive.
     Answer,
 }
 
-/// A connection that loses the line of one index or its answer, and records all lines.
+/// A connection that loses the line with a given index or its answer, and records all lines.
 struct SingleLossConsole {
     robot: DirectConsole,
     lines: Vec<String>,
@@ -233,17 +245,20 @@ impl Console for SingleLossConsole {
                 let _ = self.robot.ask(line).await;
                 Err("the answer was lost")
             }
-            _ => Ok(self.robot.ask(line).await.expect("an answer")),
+            _ => Ok(self.robot.ask(line).await.expect("the robot answers")),
         }
     }
 
     async fn pause(&mut self, duration: Duration) -> Result<(), &'static str> {
-        self.robot.pause(duration).await.expect("a pause");
+        self.robot
+            .pause(duration)
+            .await
+            .expect("a pause cannot fail");
         Ok(())
     }
 }
 
-/// Makes a calibration with every kind of setting and two saves.
+/// Performs a calibration with every kind of setting and two saves.
 async fn calibrate<C: Console>(guide: &mut Guide<C>) -> Result<(), ConsoleError<C::Error>> {
     guide.trim(3, 2.0).await?;
     guide.reverse(3).await?;
@@ -254,7 +269,7 @@ async fn calibrate<C: Console>(guide: &mut Guide<C>) -> Result<(), ConsoleError<
     guide.trim(1, -0.5).await
 }
 
-/// Makes the calibration with one loss; returns the guide, and true if the calibration has failed.
+/// Performs the calibration with one loss; returns the guide, and true if the calibration has failed.
 fn calibrate_with_loss(loss: (usize, Loss)) -> (Guide<SingleLossConsole>, bool) {
     let robot = DirectConsole::power_on(PAPER);
     let connection = SingleLossConsole {
@@ -280,8 +295,8 @@ fn load_stored(guide: &mut Guide<SingleLossConsole>) -> Calibration {
 }
 
 #[test]
-fn wherever_a_line_or_its_answer_is_lost_the_guide_ends_with_the_settings_of_the_robot() {
-    // Line 0 reads the settings when the guide begins; its loss only ends the guide.
+fn whichever_line_or_answer_is_lost_the_guide_ends_with_the_settings_of_the_robot() {
+    // Line 0 reads the settings when the guide starts; without them there is no guide.
     let mut loss_count = 0;
     for index in 1.. {
         for loss in [Loss::Line, Loss::Answer] {
@@ -294,7 +309,7 @@ fn wherever_a_line_or_its_answer_is_lost_the_guide_ends_with_the_settings_of_the
             let is_query = guide.console().lines[index] == "status";
             assert!(is_query || guide.is_changed(), "{index}, {loss:?}");
             // A cancelled calibration restores the stored settings, so a reset changes nothing.
-            block_on(guide.restore()).expect("an answer");
+            block_on(guide.restore()).expect("the robot answers");
             let active = guide.console().robot.calibration();
             assert!(
                 active.is_equivalent_to(guide.calibration()),
@@ -309,7 +324,7 @@ fn wherever_a_line_or_its_answer_is_lost_the_guide_ends_with_the_settings_of_the
 
             // A save stores the settings that the guide shows.
             let (mut guide, _) = calibrate_with_loss((index, loss));
-            block_on(guide.save()).expect("an answer");
+            block_on(guide.save()).expect("the robot answers");
             let shown = guide.calibration().clone();
             assert!(
                 shown.is_equivalent_to(&guide.console().robot.calibration()),
@@ -330,69 +345,70 @@ fn a_servo_moves_from_angle_to_angle_without_a_return_to_neutral() {
         lines: Vec::new(),
         loss: None,
     };
-    let mut guide = block_on(Guide::begin(&mut connection)).expect("an answer");
+    let mut guide = block_on(Guide::begin(&mut connection)).expect("the robot answers");
     for degrees in [140.0, 141.0] {
-        block_on(guide.point(0, degrees)).expect("no refusal");
+        block_on(guide.point(0, degrees)).expect("the robot accepts the settings");
     }
     let stand_lines = connection.lines.iter().filter(|line| *line == "stand");
     assert_eq!(stand_lines.count(), 1);
 }
 
 #[test]
-fn unsaved_settings_of_the_beginning_are_restored_also_after_a_lost_save() {
+fn settings_that_were_unsaved_at_the_start_are_restored_even_after_a_lost_save() {
     // If only the answer was lost, the robot has saved the new trim.
     for (loss, trim) in [(Loss::Line, 2.0), (Loss::Answer, 3.0)] {
         let mut guide = guide_after(&["trim 1 5", "save", "trim 1 2"], 2, loss);
-        block_on(guide.trim(0, 1.0)).expect("no refusal");
-        block_on(guide.save()).expect_err("a lost line");
+        block_on(guide.trim(0, 1.0)).expect("the robot accepts the settings");
+        block_on(guide.save()).expect_err("the exchange is lost");
         for _ in 0..2 {
-            block_on(guide.restore()).expect("an answer");
+            block_on(guide.restore()).expect("the robot answers");
             let active = guide.console().robot.calibration();
             assert_eq!(active.servos[0].trim, trim);
         }
     }
 }
 
-/// A guide that begins after the paper's robot has received some lines, with a loss at the line of this index.
+/// A guide that starts after the paper's robot has received some lines, with a loss at the line with this index.
 fn guide_after(lines: &[&str], index: usize, loss: Loss) -> Guide<SingleLossConsole> {
     let mut robot = DirectConsole::power_on(PAPER);
     for line in lines {
-        block_on(robot.ask(line)).expect("an answer");
+        block_on(robot.ask(line)).expect("the robot answers");
     }
     let connection = SingleLossConsole {
         robot,
         lines: Vec::new(),
         loss: Some((index, loss)),
     };
-    block_on(Guide::begin(connection)).expect("an answer")
+    block_on(Guide::begin(connection)).expect("the robot answers")
 }
 
 #[test]
-fn settings_saved_before_the_beginning_are_not_restored_after_a_lost_save() {
+fn settings_saved_before_the_start_are_not_restored_after_a_lost_save() {
     let mut guide = guide_after(&["trim 1 5", "save", "trim 1 2"], 2, Loss::Line);
-    block_on(guide.trim(0, 1.0)).expect("no refusal");
-    block_on(guide.save()).expect_err("a lost line");
-    block_on(guide.trim(0, -1.0)).expect("no refusal");
-    block_on(guide.restore()).expect("an answer");
+    block_on(guide.trim(0, 1.0)).expect("the robot accepts the settings");
+    block_on(guide.save()).expect_err("the exchange is lost");
+    block_on(guide.trim(0, -1.0)).expect("the robot accepts the settings");
+    block_on(guide.restore()).expect("the robot answers");
     assert_eq!(guide.console().robot.calibration().servos[0].trim, 2.0);
 }
 
 #[test]
 fn a_setting_whose_answer_was_lost_is_read_again_before_the_next_change() {
     let mut guide = guide_after(&[], 1, Loss::Answer);
-    block_on(guide.set_scale(0, 11.0)).expect_err("a lost line");
-    let scale = block_on(guide.scale_by_turn(0, 30.0, 30.0)).expect("no refusal");
+    block_on(guide.set_scale(0, 11.0)).expect_err("the exchange is lost");
+    let scale =
+        block_on(guide.scale_by_turn(0, 30.0, 30.0)).expect("the robot accepts the settings");
     assert_eq!(scale, 11.0);
 
     let mut guide = guide_after(&[], 1, Loss::Answer);
-    block_on(guide.trim(0, 1.5)).expect_err("a lost line");
+    block_on(guide.trim(0, 1.5)).expect_err("the exchange is lost");
     let mut calibration = factory_settings();
     calibration.servos[1].limit = [40.0, 43.0];
-    block_on(guide.replace(&calibration)).expect_err("too narrow");
+    block_on(guide.replace(&calibration)).expect_err("the travel is too narrow");
     assert_eq!(guide.console().robot.calibration().servos[0].trim, 1.5);
 }
 
-/// A connection that answers `ok` to every trim of A2 and does not pass it on.
+/// A connection that answers `ok` to every trim of A2 without passing it on.
 struct TrimIgnoringConsole(DirectConsole);
 
 impl Console for TrimIgnoringConsole {
@@ -418,11 +434,11 @@ fn settings_that_differ_when_read_back_are_an_error() {
     let mut guide = block_on(Guide::begin(TrimIgnoringConsole(DirectConsole::power_on(
         PAPER,
     ))))
-    .expect("an answer");
+    .expect("the robot answers");
     let mut calibration = factory_settings();
     calibration.servos[0].trim = 1.0;
     calibration.servos[1].trim = 1.0;
-    let error = block_on(guide.replace(&calibration)).expect_err("a trim is missing");
+    let error = block_on(guide.replace(&calibration)).expect_err("a trim differs");
     assert_eq!(error, SendError::Differs);
     let active = guide.console().0.calibration();
     assert!(active.is_equivalent_to(&factory_settings()), "{active:?}");
@@ -449,7 +465,7 @@ impl Console for LossyConsole {
         if let Some((_, Loss::Line)) = loss {
             return Err("the line was lost");
         }
-        let reply = self.robot.ask(line).await.expect("an answer");
+        let reply = self.robot.ask(line).await.expect("the robot answers");
         if line == "save" && reply.answer.starts_with("ok") {
             self.saved = self.robot.calibration();
         }
@@ -460,12 +476,15 @@ impl Console for LossyConsole {
     }
 
     async fn pause(&mut self, duration: Duration) -> Result<(), &'static str> {
-        self.robot.pause(duration).await.expect("a pause");
+        self.robot
+            .pause(duration)
+            .await
+            .expect("a pause cannot fail");
         Ok(())
     }
 }
 
-/// Performs one of a person's actions, and ignores a failure, as a person may do.
+/// Performs the action with this number, and ignores a failure, as a person may do.
 async fn perform(guide: &mut Guide<LossyConsole>, action: usize, servo: usize, amount: f64) {
     let neutral = [138.59, 41.41, 318.59, 221.41][servo];
     let _ = match action {
@@ -506,18 +525,18 @@ proptest! {
     ) {
         let mut robot = DirectConsole::power_on(PAPER);
         for line in ["trim 1 5", "save", "trim 1 2"] {
-            block_on(robot.ask(line)).expect("an answer");
+            block_on(robot.ask(line)).expect("the robot answers");
         }
         let saved = robot.calibration();
         let connection = LossyConsole { robot, line_count: 0, losses, saved };
-        let mut guide = block_on(Guide::begin(connection)).expect("no loss yet");
+        let mut guide = block_on(Guide::begin(connection)).expect("nothing is lost yet");
         for (action, servo, amount) in actions {
             block_on(perform(&mut guide, action, servo, amount));
         }
         guide.console().losses.clear();
         match ends_with_save {
-            true => block_on(guide.save()).expect("an answer"),
-            false => block_on(guide.restore()).map(drop).expect("an answer"),
+            true => block_on(guide.save()).expect("the robot answers"),
+            false => block_on(guide.restore()).map(drop).expect("the robot answers"),
         }
         prop_assert!(!guide.is_changed());
         let shown = guide.calibration().clone();

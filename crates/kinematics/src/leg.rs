@@ -2,8 +2,8 @@
 //!
 //! Ground link and coupler are equally long, and so are crank and follower. So the follower stays
 //! parallel to the crank and the coupler never turns. At crank angles of 0 and 180 degrees, the
-//! change points, all four joints lie on one line, and the linkage may continue as an anti-
-//! parallelogram, whose coupler turns. Beyond a change point it is unknown which of the two
+//! change points, all four joints lie on one line, and the linkage may continue as an
+//! anti-parallelogram, whose coupler turns. Beyond a change point it is unknown which of the two
 //! linkages the leg has become. So the margin is signed: positive between the change points on the
 //! side on which the leg was assembled, negative beyond them.
 //!

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// A connection to a board. Times are those of the board: a simulated one may run slower or faster than this machine.
 pub trait Board {
-    /// Resets the chip, which starts its boot loader, and sets the speed of the line.
+    /// Resets the chip, which starts its boot loader, and sets the baud rate of the line.
     ///
     /// # Errors
     /// Fails if the connection is gone.
@@ -16,8 +16,8 @@ pub trait Board {
     /// Fails if the bytes cannot be sent, or the connection is gone.
     fn write(&mut self, bytes: &[u8]) -> impl Future<Output = Result<(), BoardError>>;
 
-    /// Fills `bytes`, and reads no more: further bytes may be for another reader. Returns the number of bytes that have
-    /// arrived within the time limit.
+    /// Fills `bytes`, and reads no more, because further bytes may be for another reader. Returns the number of bytes
+    /// that have arrived within the time limit.
     ///
     /// # Errors
     /// Fails if the connection is gone.
@@ -27,11 +27,11 @@ pub trait Board {
         time_limit: Duration,
     ) -> impl Future<Output = Result<usize, BoardError>>;
 
-    /// Waits for the given time and discards all bytes received until then.
+    /// Discards all bytes received within the next `duration`.
     ///
     /// # Errors
     /// Fails if the connection is gone.
-    fn discard(&mut self, time: Duration) -> impl Future<Output = Result<(), BoardError>>;
+    fn discard(&mut self, duration: Duration) -> impl Future<Output = Result<(), BoardError>>;
 }
 
 /// The reason why a connection failed.

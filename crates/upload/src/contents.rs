@@ -14,7 +14,7 @@ use crate::image::{BLANK, Image, PAGE_BYTES, Page};
 /// The code at address 0 during an upload, with nothing else in its page: `rjmp .-2`, a jump to itself.
 pub(super) const IDLE_JUMP: [u8; 2] = [0xff, 0xcf];
 
-/// The address of a robot's section.
+/// The address of a robot's section in flash.
 const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
 
 /// The contents of a board's flash, compared with an image.
@@ -53,7 +53,7 @@ pub enum Program {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RobotInFlash {
     /// The section is blank.
-    None,
+    Blank,
     /// A valid robot, by its name and hash.
     Named(String),
     /// A section that was not completely written, is damaged, or has another format.
@@ -90,7 +90,7 @@ impl FlashContents {
         let robot = match robot_in(flash) {
             Some(robot) => RobotInFlash::Named(robot_label(&robot)),
             None if is_blank(&flash[ROBOT_ADDRESS..ROBOT_ADDRESS + PAGE_BYTES]) => {
-                RobotInFlash::None
+                RobotInFlash::Blank
             }
             None => RobotInFlash::Damaged,
         };
@@ -135,7 +135,7 @@ impl fmt::Display for FlashContents {
                 }
                 write!(f, "lizard {major}.{minor}.{patch}")?;
                 match &self.robot {
-                    RobotInFlash::None => f.write_str(" without a robot")?,
+                    RobotInFlash::Blank => f.write_str(" without a robot")?,
                     RobotInFlash::Damaged => f.write_str(" with a damaged robot")?,
                     RobotInFlash::Named(name) => write!(f, " robot {name}")?,
                 }
@@ -154,7 +154,7 @@ mod tests {
     use crate::upload::tests::{CODE, robot};
 
     #[test]
-    fn blank_flash_half_a_program_and_another_program_are_told_apart() {
+    fn blank_flash_half_a_program_and_another_program_are_distinguished() {
         let image = Image::new(vec![1, 2, 3]).expect("the image fits");
         let description_after = |changes: &[(usize, u8)]| {
             let mut flash = vec![0xff; BOOT_ADDRESS];
@@ -207,27 +207,27 @@ mod tests {
         let large_image = firmware_image(&large);
         assert_eq!(description(&flash, &large_image), robot_description(&paper));
         // A sketch that is shorter than the firmware: the robot's section is still there.
-        let mut sketch = flash.clone();
-        sketch[..1000].fill(0x95);
+        let mut sketch_flash = flash.clone();
+        sketch_flash[..1000].fill(0x95);
         assert_eq!(
-            description(&sketch, &robot_alone_image),
+            description(&sketch_flash, &robot_alone_image),
             "the board has another program"
         );
-        let mut damaged = flash.clone();
-        damaged[ROBOT_ADDRESS + 100] ^= 1;
+        let mut damaged_flash = flash.clone();
+        damaged_flash[ROBOT_ADDRESS + 100] ^= 1;
         assert_eq!(
-            description(&damaged, &image),
+            description(&damaged_flash, &image),
             format!("{lizard_description} with a damaged robot")
         );
-        damaged[ROBOT_ADDRESS..].fill(0xff);
+        damaged_flash[ROBOT_ADDRESS..].fill(0xff);
         assert_eq!(
-            description(&damaged, &image),
+            description(&damaged_flash, &image),
             format!("{lizard_description} without a robot")
         );
-        let mut other_build = flash;
-        other_build[0x1000] ^= 1;
+        let mut other_build_flash = flash;
+        other_build_flash[0x1000] ^= 1;
         assert_eq!(
-            description(&other_build, &image),
+            description(&other_build_flash, &image),
             robot_description(&paper).replace("has ", "has another build of ")
         );
     }

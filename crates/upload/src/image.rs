@@ -1,6 +1,6 @@
 //! An image for the flash of a UNO: code and robot section, or a robot section alone.
 //!
-//! Flash is written in pages. The boot loader in its last 512 bytes writes all other pages but
+//! Flash is written in pages. The boot loader in the last 512 bytes of flash writes all other pages but
 //! cannot write itself, so an image ends before it.
 
 use std::ops::Range;
@@ -24,8 +24,9 @@ const LINE_BYTES: usize = 16;
 /// The firmware with its robot, or a robot alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
-    /// Address of the first byte, at the beginning of a page.
+    /// Address of the first byte, which is also the first of a page.
     start_address: usize,
+    /// The bytes from that address on.
     bytes: Vec<u8>,
 }
 
@@ -34,13 +35,13 @@ const ROBOT_ADDRESS: usize = START_ADDRESS as usize;
 
 const _: () = assert!(
     ROBOT_ADDRESS.is_multiple_of(PAGE_BYTES),
-    "the robot's section begins with a page"
+    "the robot's section starts at a page"
 );
 
 /// A page of flash that an image fills completely or in part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Page {
-    /// The address of its first byte.
+    /// The address of the page's first byte.
     pub address: usize,
     /// The page's bytes; [`BLANK`] outside the image.
     pub bytes: [u8; PAGE_BYTES],
@@ -123,7 +124,7 @@ impl Image {
     /// A robot's section without code.
     ///
     /// # Errors
-    /// Fails if it has no bytes, or too many.
+    /// Fails if the section has no bytes, or too many.
     pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
         match ROBOT_ADDRESS + section.len() {
             ROBOT_ADDRESS => Err(ImageError::NoRobot),
@@ -208,16 +209,16 @@ impl Image {
 
     /// The image's pages in the order of their addresses.
     pub fn pages(&self) -> Vec<Page> {
-        let page = |(index, part): (usize, &[u8])| {
+        let page_of = |(index, chunk): (usize, &[u8])| {
             let mut bytes = [BLANK; PAGE_BYTES];
-            bytes[..part.len()].copy_from_slice(part);
+            bytes[..chunk.len()].copy_from_slice(chunk);
             let address = self.start_address + index * PAGE_BYTES;
             Page { address, bytes }
         };
         self.bytes
             .chunks(PAGE_BYTES)
             .enumerate()
-            .map(page)
+            .map(page_of)
             .collect()
     }
 }
@@ -268,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn an_image_from_hex_begins_at_address_0_and_is_blank_in_the_gaps() {
+    fn an_image_from_hex_starts_at_address_0_and_is_blank_in_the_gaps() {
         let image = Image::from_hex(HEX).expect("the text is an image");
         assert_eq!(image.bytes().len(), 20);
         assert_eq!(image.bytes()[..3], [0x0c, 0x94, 0x34]);
@@ -282,7 +283,7 @@ mod tests {
 
     #[test]
     fn an_image_written_as_hex_and_read_back_is_the_same() {
-        let bytes: Vec<u8> = (0..1000).map(|at| (at * 7) as u8).collect();
+        let bytes: Vec<u8> = (0..1000).map(|index| (index * 7) as u8).collect();
         let image = Image::new(bytes).expect("the image fits");
         let text = image.to_hex();
         assert_eq!(Image::from_hex(&text), Ok(image));
@@ -303,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_alone_is_at_its_place_and_ends_before_the_boot_loader() {
+    fn a_robot_alone_starts_at_its_address_and_ends_before_the_boot_loader() {
         let robot = Image::robot_alone(vec![5; 130]).expect("the image fits");
         let addresses: Vec<usize> = robot.pages().iter().map(|page| page.address).collect();
         assert_eq!(addresses, [0x6e00, 0x6e80]);
@@ -327,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_line_of_a_hex_file_is_refused_with_its_number() {
+    fn an_invalid_line_of_a_hex_file_is_refused_with_its_number() {
         let error_with_second_line =
             |line: &str| error_message(&HEX.replacen(":0400100001020304E2", line, 1));
         assert!(

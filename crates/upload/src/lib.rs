@@ -1,12 +1,12 @@
-//! Writing of firmware and robot to a UNO or a Nano through the board's own boot loader.
+//! Writes firmware and robot to a UNO or a Nano through the board's own boot loader.
 //!
 //! The boot loader uses the same USB cable as the console, but it listens only for a second after a reset, it has
 //! no checksums, and a cable pulled during an upload leaves flash partly written. So [`upload`] reads the flash first,
 //! writes only pages that differ, reads all of them back, and writes the page at which the program starts last.
 //!
 //! The crate does not access ports or clocks itself: a [`Board`] is a serial line with time limits, which this machine
-//! or a browser provides. Its functions are `async`, since a browser must not block; where reads block, any executor
-//! will do.
+//! or a browser provides. Its functions are `async`, since a browser must not block; if reads may block, any
+//! executor will do.
 //!
 //! # When not to use it
 //! It writes only the flash of an ATmega328P whose boot loader speaks STK500, version 1. Use avrdude for other chips,

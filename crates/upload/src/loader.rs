@@ -9,7 +9,7 @@
 //! [`LoaderKind`].
 //!
 //! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, the UNO's loader, and
-//! ATmegaBOOT_168.c, the Nano's until 2018, for the times and for the features that they leave out.
+//! ATmegaBOOT_168.c, the Nano's until 2018, for the timing and for the commands that they do not support.
 
 use std::time::Duration;
 
@@ -30,7 +30,7 @@ const READ_SIGNATURE: u8 = 0x75;
 const FLASH: u8 = b'F';
 /// Largest number of calls, which are requests to synchronise, after one reset.
 const MAX_CALLS: usize = 5;
-/// Largest number of other bytes before the answer to a call: about as many as the line carries in [`CALL_TIME`].
+/// Largest number of stray bytes before the answer to a call: about as many as the line carries in [`CALL_TIME`].
 const MAX_STRAY_BYTES: usize = 1300;
 
 /// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its receiver, and
@@ -50,7 +50,7 @@ pub enum LoaderKind {
     /// The boot loader of UNOs, and of Nanos since 2018.
     Optiboot,
     /// The boot loader of older Nanos and of many copies of them. It starts the program 1.5 s after the last byte,
-    /// even if it is told to leave.
+    /// even after the command to leave.
     AtmegaBoot,
 }
 
@@ -195,16 +195,16 @@ impl<B: Board> Loader<B> {
         let count = self.board.read(&mut received, ANSWER_TIME).await?;
         match received.as_slice() {
             _ if count < received.len() => Err(LoaderError::Silent),
-            [IN_SYNC, between @ .., OK] => {
-                answer.copy_from_slice(between);
+            [IN_SYNC, content @ .., OK] => {
+                answer.copy_from_slice(content);
                 Ok(())
             }
             _ => Err(LoaderError::Garbled),
         }
     }
 
-    /// Waits for [`IN_SYNC`] followed by [`OK`], after any other bytes. Returns false if nothing arrives in time, or
-    /// too many other bytes arrive.
+    /// Waits for [`IN_SYNC`] followed by [`OK`], after any stray bytes. Returns false if nothing arrives in time, or
+    /// too many stray bytes arrive.
     async fn wait_for_sync(&mut self) -> Result<bool, LoaderError> {
         let mut previous_byte = 0;
         for _ in 0..MAX_STRAY_BYTES {

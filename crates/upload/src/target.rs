@@ -1,15 +1,15 @@
 //! The model of a board, and the part of flash that is free for an image.
 //!
 //! An Arduino Nano has the UNO's chip and runs the UNO's firmware. But its boot section has 2 KB (Arduino's
-//! boards.txt: high fuse 0xDA), where that of a UNO has 512 bytes, and the chip starts at the first byte of that
+//! boards.txt: high fuse 0xDA), while that of a UNO has 512 bytes, and the chip starts at the first byte of that
 //! section. Code written into it would be started as if it were a boot loader, and only a programmer wired to the
 //! pins could repair that. Boot loaders do not report the fuses. An old Nano is recognised by its baud rate; a newer
-//! one answers like a UNO, and at most its USB chip distinguishes it.
+//! one answers like a UNO, and only its USB chip, if anything, distinguishes it.
 
 use crate::image::{BOOT_ADDRESS, Image, NANO_BOOT_ADDRESS};
 use crate::loader::LoaderKind;
 
-/// A model of board, as named by the user.
+/// A board's model, as named by the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Model {
@@ -19,7 +19,7 @@ pub enum Model {
     Nano,
 }
 
-/// The facts about a board before its boot loader is called.
+/// The facts known about a board before its boot loader is called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Target {
     /// The model that the user has named.

@@ -1,4 +1,4 @@
-//! Writes an image to a board so that an interruption is never dangerous.
+//! Writes an image to a board in an order in which an interruption is never dangerous.
 //!
 //! A cable may be pulled at any moment, and the chip then starts whatever is in flash; half a program may drive the
 //! servos anywhere. So, before code is changed, the page where the program starts is replaced by a loop that does
@@ -10,7 +10,7 @@
 //! code stays, it must be code that can read this robot: its version mark ([`lizard_core::numbers::mark`]) is checked
 //! before anything is written.
 //!
-//! Pages that are already right are not written: this saves time, and flash wears out (10 000 writes, ATmega328P
+//! Pages that are already correct are not written: this saves time, and flash wears out (10 000 writes, ATmega328P
 //! data sheet, "Features").
 
 use std::fmt;
@@ -66,7 +66,7 @@ pub enum Event<'a> {
 pub struct PageCounts {
     /// Number of pages written.
     pub written: usize,
-    /// Number of pages that were already right.
+    /// Number of pages that were already correct.
     pub kept: usize,
 }
 
@@ -101,7 +101,7 @@ pub enum UploadError {
     /// The image reaches into the boot section.
     #[error(transparent)]
     TooLong(#[from] ImageTooLong),
-    /// A byte of flash still has another value after it was written twice.
+    /// A byte of flash has the wrong value even after it was written twice.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
          {read:#04x}. The flash is worn out, or the supply too weak. {flash_state}"
@@ -188,18 +188,21 @@ pub async fn upload<B: Board>(
         if attempt == MAX_ATTEMPTS || !error.is_transient() {
             return Err(upload.upload_error(error));
         }
-        let next = match upload.has_answered {
+        let next_kind = match upload.has_answered {
             true => kind,
             false => loaders.clone().next().unwrap_or(kind),
         };
         (upload.report)(Event::Retry {
             error: &error,
             called_kind: kind,
-            next_kind: next,
+            next_kind,
         });
     }
     let page_count = image.pages().len();
-    let written = is_page_written.into_iter().filter(|done| *done).count();
+    let written = is_page_written
+        .into_iter()
+        .filter(|is_written| *is_written)
+        .count();
     Ok(PageCounts {
         written,
         kept: page_count - written,
@@ -250,18 +253,20 @@ impl From<LoaderError> for AttemptError {
 struct Upload<'a, B> {
     loader: &'a mut Loader<B>,
     image: &'a Image,
+    /// The facts known before the boot loader answered.
     target: Target,
+    /// The receiver of progress events.
     report: &'a mut dyn FnMut(Event<'_>),
     /// True if the loader has answered.
     has_answered: bool,
     /// True if the board's contents were reported.
     has_reported: bool,
+    /// The state of flash if the upload fails now.
     flash_state: FlashState,
 }
 
 impl<B: Board> Upload<'_, B> {
-    /// Makes one attempt, from the reset to the start of the program. Marks the pages that it
-    /// writes.
+    /// Makes one attempt, from the reset to the start of the program. Marks the pages that it writes.
     async fn attempt(
         &mut self,
         kind: LoaderKind,
@@ -273,8 +278,8 @@ impl<B: Board> Upload<'_, B> {
         if chip != Chip::ATMEGA328P {
             return Err(AttemptError::UploadFailed(UploadError::Chip(chip)));
         }
-        let room = self.target.check_room(self.image, kind);
-        room.map_err(|error| AttemptError::UploadFailed(error.into()))?;
+        let room_check = self.target.check_room(self.image, kind);
+        room_check.map_err(|error| AttemptError::UploadFailed(error.into()))?;
         let flash = self.read_flash(kind.start_address()).await?;
         let mut pages_to_write = self.image.pages();
         pages_to_write.retain(|page| flash[page.range()] != page.bytes);
@@ -282,7 +287,7 @@ impl<B: Board> Upload<'_, B> {
             for page in &pages_to_write {
                 is_page_written[page.address / PAGE_BYTES] = true;
             }
-            // The first page had other contents meanwhile, so it is written again.
+            // The first page is replaced meanwhile, so it is written, too.
             is_page_written[self.first_page().address / PAGE_BYTES] = true;
             self.write_pages(pages_to_write, &flash).await?;
         }
@@ -305,7 +310,7 @@ impl<B: Board> Upload<'_, B> {
         mut pages_to_write: Vec<Page>,
         flash: &[u8],
     ) -> Result<(), AttemptError> {
-        let first = self.first_page();
+        let first_page = self.first_page();
         let mut placeholder = [BLANK; PAGE_BYTES];
         if self.image.is_robot_alone() {
             self.flash_state = FlashState::HalfRobot;
@@ -313,12 +318,12 @@ impl<B: Board> Upload<'_, B> {
             self.flash_state = FlashState::HalfProgram;
             placeholder[..IDLE_JUMP.len()].copy_from_slice(&IDLE_JUMP);
         }
-        pages_to_write.retain(|page| page.address != first.address);
-        if !pages_to_write.is_empty() && flash[first.range()] != placeholder {
-            self.write_page(first.address, &placeholder).await?;
+        pages_to_write.retain(|page| page.address != first_page.address);
+        if !pages_to_write.is_empty() && flash[first_page.range()] != placeholder {
+            self.write_page(first_page.address, &placeholder).await?;
         }
         self.write_and_verify(&pages_to_write).await?;
-        self.write_and_verify(&[first]).await
+        self.write_and_verify(&[first_page]).await
     }
 
     /// Reads flash up to the boot loader and reports its contents. For a robot alone, reads only the first page of
@@ -367,22 +372,22 @@ impl<B: Board> Upload<'_, B> {
         pages: Range<usize>,
     ) -> Result<(), AttemptError> {
         let page_count = pages.len();
-        for (done, page) in pages.enumerate() {
+        for (index, page) in pages.enumerate() {
             let address = page * PAGE_BYTES;
             let page_bytes = self.loader.read_page(address).await?;
             flash[address..address + PAGE_BYTES].copy_from_slice(&page_bytes);
-            (self.report)(Event::Progress(Step::Reading, done + 1, page_count));
+            (self.report)(Event::Progress(Step::Reading, index + 1, page_count));
         }
         Ok(())
     }
 
     /// Writes pages and reads them back. A page that does not read back as written is written once more.
     async fn write_and_verify(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
-        for (done, page) in pages.iter().enumerate() {
+        for (index, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes).await?;
-            (self.report)(Event::Progress(Step::Writing, done + 1, pages.len()));
+            (self.report)(Event::Progress(Step::Writing, index + 1, pages.len()));
         }
-        for (done, page) in pages.iter().enumerate() {
+        for (index, page) in pages.iter().enumerate() {
             let mut read_back = self.loader.read_page(page.address).await?;
             if read_back != page.bytes {
                 self.write_page(page.address, &page.bytes).await?;
@@ -396,11 +401,12 @@ impl<B: Board> Upload<'_, B> {
                     flash_state: self.flash_state,
                 }));
             }
-            (self.report)(Event::Progress(Step::Verifying, done + 1, pages.len()));
+            (self.report)(Event::Progress(Step::Verifying, index + 1, pages.len()));
         }
         Ok(())
     }
 
+    /// Writes one page, at the address of its first byte.
     async fn write_page(
         &mut self,
         address: usize,

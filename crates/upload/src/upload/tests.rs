@@ -29,8 +29,9 @@ fn image() -> Image {
 /// The addresses of the pages of [`image`].
 const PAGE_ADDRESSES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
 
+/// Bytes that differ from their neighbours.
 fn pattern_bytes(count: usize, factor: usize) -> Vec<u8> {
-    (0..count).map(|at| (at * factor + 1) as u8).collect()
+    (0..count).map(|index| (index * factor + 1) as u8).collect()
 }
 
 /// A board whose flash holds [`image`].
@@ -51,17 +52,19 @@ fn run(board: BoardDouble) -> Run {
 }
 
 fn run_with(board: BoardDouble, image: &Image) -> Run {
-    run_as(board, image, Target::default())
+    run_with_target(board, image, Target::default())
 }
 
 /// Uploads an image to a board; `target` holds the facts that are known before the boot loader answers.
-fn run_as(board: BoardDouble, image: &Image, target: Target) -> Run {
+fn run_with_target(board: BoardDouble, image: &Image, target: Target) -> Run {
     let mut loader = Loader::new(board);
     let (mut reported_contents, mut retry_count) = (Vec::new(), 0);
     let mut report = |event: Event<'_>| match event {
         Event::Found(contents) => reported_contents.push(contents.to_string()),
         Event::Retry { .. } => retry_count += 1,
-        Event::Progress(_, done, of) => assert!((1..=of).contains(&done), "{done} of {of}"),
+        Event::Progress(_, done, total) => {
+            assert!((1..=total).contains(&done), "{done} of {total}");
+        }
     };
     let result = block_on(upload(&mut loader, image, target, &mut report));
     let board = loader.into_board();
@@ -74,12 +77,16 @@ fn run_as(board: BoardDouble, image: &Image, target: Target) -> Run {
 }
 
 impl Run {
-    /// Checks that the board has [`image`], has started it, and still has its boot loader.
+    /// Checks that the board has [`image`], has started it, and still has its boot loader; returns the page counts.
     fn assert_written(&self) -> PageCounts {
         let counts = *self.result.as_ref().expect("the image is written");
         let (flash, blank) = (&self.board.flash, BoardDouble::blank().flash);
         assert_eq!(flash[..600], pattern_bytes(600, 3));
-        assert_eq!(flash[0x7e00..], blank[0x7e00..], "the boot loader");
+        assert_eq!(
+            flash[0x7e00..],
+            blank[0x7e00..],
+            "the boot loader is unchanged"
+        );
         assert!(self.board.has_started_program, "the program is started");
         counts
     }
@@ -106,6 +113,7 @@ fn board_with_robot(name: &str) -> BoardDouble {
     BoardDouble::with(firmware_image(name).bytes())
 }
 
+/// The image of a robot alone, that of the robot file with this name.
 fn robot_image(name: &str) -> Image {
     Image::robot_alone(robot(name).section()).expect("the image fits")
 }
@@ -126,7 +134,11 @@ fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
     let counts = run.assert_written();
     assert_eq!((counts.written, counts.kept), (5, 0));
     assert_eq!(run.reported_contents, ["the board has no program"]);
-    assert!(run.board.flash[0x280..0x7e00].iter().all(|&it| it == 0xff));
+    assert!(
+        run.board.flash[0x280..0x7e00]
+            .iter()
+            .all(|&byte| byte == 0xff)
+    );
     assert_eq!((run.board.reset_count, run.retry_count), (1, 0));
 }
 
@@ -226,7 +238,7 @@ fn a_board_that_never_stops_sending_is_not_taken_for_a_boot_loader() {
 }
 
 #[test]
-fn a_board_is_identified_by_its_boot_loader_and_starts_again() {
+fn a_board_is_identified_by_its_boot_loader_and_restarted() {
     let identify_board = |board: BoardDouble| {
         let mut loader = Loader::new(board);
         let kind = block_on(identify(&mut loader));
@@ -245,19 +257,19 @@ fn a_board_is_identified_by_its_boot_loader_and_starts_again() {
         identify_board(BoardDouble::old_nano()),
         (Ok(LoaderKind::AtmegaBoot), true)
     );
-    let mut other = BoardDouble::blank();
-    other.signature = [0x1e, 0x95, 0x14];
-    let (refusal, has_started) = identify_board(other);
+    let mut board_with_other_chip = BoardDouble::blank();
+    board_with_other_chip.signature = [0x1e, 0x95, 0x14];
+    let (refusal, has_started) = identify_board(board_with_other_chip);
     assert!(
         has_started
             && refusal.is_err_and(
                 |message| message.starts_with("the chip is an ATmega328, not an ATmega328P")
             )
     );
-    let mut unplugged = BoardDouble::blank();
-    unplugged.unplugged_after_pages = Some(0);
+    let mut unplugged_board = BoardDouble::blank();
+    unplugged_board.unplugged_after_pages = Some(0);
     assert!(
-        identify_board(unplugged)
+        identify_board(unplugged_board)
             .0
             .is_err_and(|message| message.starts_with("the port is gone"))
     );
@@ -281,16 +293,16 @@ fn another_chip_is_named_and_not_written() {
 }
 
 #[test]
-fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
-    let old = [9; 500];
-    let undisturbed_board = run(BoardDouble::with(&old)).board;
+fn an_upload_recovers_from_the_loss_of_any_byte_to_the_board() {
+    let old_contents = [9; 500];
+    let undisturbed_board = run(BoardDouble::with(&old_contents)).board;
     assert!(
         undisturbed_board.received_count > 2000,
         "{} bytes",
         undisturbed_board.received_count
     );
     for lost_byte in 0..undisturbed_board.received_count {
-        let mut board = BoardDouble::with(&old);
+        let mut board = BoardDouble::with(&old_contents);
         board.lost_byte_to_board = Some(lost_byte);
         let run = run(board);
         assert!(
@@ -309,18 +321,18 @@ fn any_one_byte_lost_on_the_way_to_the_board_is_recovered() {
 }
 
 #[test]
-fn any_one_byte_lost_on_the_way_from_the_board_is_recovered() {
-    let old = [9; 500];
-    let undisturbed_board = run(BoardDouble::with(&old)).board;
+fn an_upload_recovers_from_the_loss_of_any_byte_from_the_board() {
+    let old_contents = [9; 500];
+    let undisturbed_board = run(BoardDouble::with(&old_contents)).board;
     assert!(
         undisturbed_board.sent_count > 30_000,
         "{} bytes",
         undisturbed_board.sent_count
     );
-    // First, each byte of the call and of the first pages is lost. Then, with steps of 101 bytes, each byte of a page's
-    // answer is lost for some page.
+    // Loses each byte of the call and of the first pages; then, in steps of 101 bytes, each byte of a page's answer for
+    // some page.
     for lost_byte in (0..300).chain((300..undisturbed_board.sent_count).step_by(101)) {
-        let mut board = BoardDouble::with(&old);
+        let mut board = BoardDouble::with(&old_contents);
         board.lost_byte_from_board = Some(lost_byte);
         let run = run(board);
         assert!(
@@ -346,7 +358,7 @@ fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
 }
 
 #[test]
-fn a_board_unplugged_midway_does_nothing_until_the_next_upload() {
+fn a_board_unplugged_during_an_upload_does_nothing_until_the_next_upload() {
     for pages in 1..=5 {
         let mut board = BoardDouble::with(&[9; 500]);
         board.unplugged_after_pages = Some(pages);

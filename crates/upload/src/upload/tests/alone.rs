@@ -2,6 +2,7 @@
 
 use super::*;
 
+/// The robot.toml of the paper's robot.
 const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
 #[test]
@@ -13,10 +14,10 @@ fn a_robot_alone_is_written_with_its_first_page_blank_first_and_filled_last() {
     assert_eq!(
         counts.written,
         pages.len(),
-        "each byte of the robots differs"
+        "every page of the two robots differs"
     );
-    let order = [&pages[..], &[0x6e00]].concat();
-    assert_eq!(run.board.written_addresses, order);
+    let expected_addresses = [&pages[..], &[0x6e00]].concat();
+    assert_eq!(run.board.written_addresses, expected_addresses);
     let expected_image = firmware_image("unequal");
     assert!(run.board.flash[..expected_image.end()] == *expected_image.bytes());
     assert!(run.board.has_started_program, "the firmware is started");
@@ -43,7 +44,7 @@ fn a_changed_gait_takes_less_than_a_second_on_the_serial_line() {
 }
 
 #[test]
-fn a_robot_that_the_board_has_already_is_not_written() {
+fn a_robot_that_the_board_already_has_is_not_written() {
     let run = run_with(board_with_robot("paper"), &robot_image("paper"));
     assert_eq!(run.result.expect("the upload succeeds").written, 0);
     assert!(run.board.written_addresses.is_empty() && run.board.has_started_program);
@@ -56,10 +57,10 @@ fn a_robot_that_the_board_has_already_is_not_written() {
 
 #[test]
 fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
-    let (before, large) = (board_with_robot("own-gaits").flash, robot_image("large"));
-    let code = before[..0x6e00].to_vec();
+    let (old_flash, large) = (board_with_robot("own-gaits").flash, robot_image("large"));
+    let code = old_flash[..0x6e00].to_vec();
     for written in 1..=large.pages().len() {
-        let mut board = BoardDouble::with(&before);
+        let mut board = BoardDouble::with(&old_flash);
         board.unplugged_after_pages = Some(written);
         let interrupted_run = run_with(board, &large);
         let message = interrupted_run.error_message();
@@ -91,10 +92,10 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
 }
 
 #[test]
-fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
-    let (before, paper) = (board_with_robot("own-gaits").flash, robot_image("paper"));
+fn an_upload_of_a_robot_alone_recovers_from_the_loss_of_any_byte() {
+    let (old_flash, paper) = (board_with_robot("own-gaits").flash, robot_image("paper"));
     let expected_image = firmware_image("paper");
-    let undisturbed_board = run_with(BoardDouble::with(&before), &paper).board;
+    let undisturbed_board = run_with(BoardDouble::with(&old_flash), &paper).board;
     let assert_recovered = |run: &Run, lost_byte: usize| {
         assert!(
             run.result.is_ok(),
@@ -107,12 +108,12 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
         );
     };
     for lost_byte in 0..undisturbed_board.received_count {
-        let mut board = BoardDouble::with(&before);
+        let mut board = BoardDouble::with(&old_flash);
         board.lost_byte_to_board = Some(lost_byte);
         assert_recovered(&run_with(board, &paper), lost_byte);
     }
     for lost_byte in (0..undisturbed_board.sent_count).step_by(101) {
-        let mut board = BoardDouble::with(&before);
+        let mut board = BoardDouble::with(&old_flash);
         board.lost_byte_from_board = Some(lost_byte);
         assert_recovered(&run_with(board, &paper), lost_byte);
     }
@@ -120,13 +121,13 @@ fn any_one_byte_lost_while_a_robot_is_written_is_recovered() {
 
 #[test]
 fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
-    let (before, large) = (board_with_robot("paper").flash, robot_image("large"));
+    let (paper_flash, large) = (board_with_robot("paper").flash, robot_image("large"));
     let error_after_change = |change: &dyn Fn(&mut BoardDouble)| {
-        let mut board = BoardDouble::with(&before);
+        let mut board = BoardDouble::with(&paper_flash);
         change(&mut board);
-        let before = board.flash.clone();
+        let old_flash = board.flash.clone();
         let run = run_with(board, &large);
-        assert!(run.board.flash == before && run.board.written_addresses.is_empty());
+        assert!(run.board.flash == old_flash && run.board.written_addresses.is_empty());
         run.error_message()
     };
     let reason = "a robot alone moves nothing: write the firmware, too. Nothing was written";
@@ -134,7 +135,7 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
         error_after_change(&|board| board.flash[..BOOT_ADDRESS].fill(0xff)),
         format!("the board has no program, and {reason}")
     );
-    // Another sketch, shorter than the firmware; the rest of the firmware is still there.
+    // Another sketch, shorter than the firmware, whose rest is still in flash.
     assert_eq!(
         error_after_change(&|board| board.flash[..1000].fill(0x95)),
         format!("the board has another program, and {reason}")

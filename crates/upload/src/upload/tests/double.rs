@@ -64,6 +64,7 @@ impl BoardDouble {
         Self::with_loader(LoaderKind::AtmegaBoot, 0x7800, [0x0c, 0x94, 0x34, 0x3c])
     }
 
+    /// A board with a boot loader whose first bytes are given, and otherwise blank flash.
     fn with_loader(kind: LoaderKind, loader_address: usize, loader_bytes: [u8; 4]) -> Self {
         let mut flash = vec![0xff; 0x8000];
         flash[loader_address..loader_address + 4].copy_from_slice(&loader_bytes);
@@ -125,12 +126,12 @@ impl BoardDouble {
         }
         if command[length - 1] != b' ' && self.kind == LoaderKind::AtmegaBoot {
             self.error_count += 1;
-            // MAX_ERROR_COUNT: the program starts.
+            // At MAX_ERROR_COUNT the program starts.
             self.is_listening = self.error_count < 5;
             return;
         }
         if command[length - 1] != b' ' {
-            // verifySpace(): the watchdog resets the chip, and the program starts.
+            // In verifySpace() the watchdog resets the chip, and the program starts.
             self.is_listening = false;
             return;
         }
@@ -163,9 +164,10 @@ impl BoardDouble {
         }
     }
 
+    /// Writes the page at the current address.
     fn write_page(&mut self, bytes: &[u8]) {
-        assert_eq!(bytes.len(), 128, "a page of an ATmega328P");
-        assert_eq!(self.address % 128, 0, "the address is that of a page");
+        assert_eq!(bytes.len(), 128, "a page of an ATmega328P has 128 bytes");
+        assert_eq!(self.address % 128, 0, "the address is the first of a page");
         self.flash[self.address..self.address + 128].copy_from_slice(bytes);
         if let Some((address, bits)) = self.stuck_bits {
             self.flash[address] &= !bits;

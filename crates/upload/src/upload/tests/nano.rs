@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
+fn an_old_nano_is_found_at_its_own_baud_rate_and_keeps_its_boot_loader() {
     let mut board = BoardDouble::old_nano();
     board.flash[..500].fill(9);
     let run = run_with(board, &firmware_image("paper"));
@@ -11,7 +11,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
     assert_eq!(
         (run.board.reset_count, run.retry_count),
         (2, 1),
-        "called at both speeds"
+        "called at both baud rates"
     );
     assert_eq!(
         run.reported_contents,
@@ -24,7 +24,7 @@ fn an_old_nano_is_found_at_its_own_speed_and_keeps_its_boot_loader() {
 }
 
 #[test]
-fn a_byte_lost_on_the_way_to_an_old_nano_is_recovered_at_its_speed() {
+fn an_upload_to_an_old_nano_recovers_from_the_loss_of_any_byte_to_the_board() {
     let (code, large) = (firmware_image("paper"), robot_image("large"));
     let run_with_lost_byte = |lost_byte| {
         let mut board = BoardDouble::old_nano();
@@ -61,13 +61,13 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused_if_the_board_may_b
     assert!(image.end() > 0x7800, "{:#x}", image.end());
     let refusal_of = |mut board: BoardDouble, target: Target| {
         board.flash[..500].fill(9);
-        let before = board.flash.clone();
-        let run = run_as(board, &image, target);
-        assert!(run.board.flash == before && run.board.written_addresses.is_empty());
+        let old_flash = board.flash.clone();
+        let run = run_with_target(board, &image, target);
+        assert!(run.board.flash == old_flash && run.board.written_addresses.is_empty());
         run.error_message()
     };
     let unknown_model = Target::default();
-    let model_named = |model| Target {
+    let target_of_model = |model| Target {
         model: Some(model),
         may_be_nano: true,
     };
@@ -80,7 +80,7 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused_if_the_board_may_b
     assert!(message.ends_with("Nothing was written"), "{message}");
     assert_eq!(
         message,
-        refusal_of(BoardDouble::blank(), model_named(Model::Nano))
+        refusal_of(BoardDouble::blank(), target_of_model(Model::Nano))
     );
     // A newer Nano answers like a UNO, and clones of the UNO have the same USB chip as a Nano.
     let possible_nano = Target {
@@ -92,12 +92,12 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused_if_the_board_may_b
         message.contains("; this board may be one, because of its USB chip. Nothing"),
         "{message}"
     );
-    for target in [unknown_model, model_named(Model::Uno)] {
-        let run = run_as(BoardDouble::blank(), &image, target);
+    for target in [unknown_model, target_of_model(Model::Uno)] {
+        let run = run_with_target(BoardDouble::blank(), &image, target);
         assert!(run.result.is_ok(), "{}", run.error_message());
     }
-    // An image that fits a Nano, too, is written without a question.
-    let run = run_as(
+    // An image that also fits a Nano is written although the model is unknown.
+    let run = run_with_target(
         BoardDouble::blank(),
         &firmware_image("paper"),
         possible_nano,
