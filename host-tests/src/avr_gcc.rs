@@ -7,6 +7,7 @@ use simulated_uno::Image;
 use simulated_uno::avr_gcc::run;
 pub use simulated_uno::avr_gcc::{assemble, compile_c};
 
+/// The options of avr-gcc, both for compiling and for linking.
 const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"];
 
 /// Compiles C with avr-gcc to an object that has a section for each function.
@@ -14,23 +15,25 @@ const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"]
 /// # Errors
 /// Returns avr-gcc's message if avr-gcc rejects the program.
 pub fn compile_to_object(source: &str) -> Result<Vec<u8>, String> {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [input, object] = ["program.c", "program.o"].map(|name| folder.path().join(name));
-    fs::write(&input, source).expect("the source is written");
-    run(&FLAGS, &["-c".as_ref(), input.as_ref()], &object)?;
-    Ok(fs::read(&object).expect("avr-gcc writes an object"))
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
+    let [source_path, object_path] =
+        ["program.c", "program.o"].map(|name| folder.path().join(name));
+    fs::write(&source_path, source).expect("the source can be written");
+    run(&FLAGS, &["-c".as_ref(), source_path.as_ref()], &object_path)?;
+    Ok(fs::read(&object_path).expect("avr-gcc has written an object"))
 }
 
-/// Links assembly and an object, in this order, with avr-gcc.
+/// Assembles a text with avr-gcc and links the result and an object, in this order.
 ///
 /// # Errors
 /// Returns avr-gcc's message if the program does not link.
 pub fn link(assembly: &str, object: &[u8]) -> Result<Image, String> {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [source, input, output] =
-        ["more.S", "program.o", "program.elf"].map(|name| folder.path().join(name));
-    fs::write(&source, assembly).expect("the assembly is written");
-    fs::write(&input, object).expect("the object is written");
-    run(&FLAGS, &[source.as_ref(), input.as_ref()], &output)?;
-    Ok(Image::read(output).expect("avr-gcc's ELF loads"))
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
+    let [source_path, object_path, elf_path] =
+        ["assembly.S", "program.o", "program.elf"].map(|name| folder.path().join(name));
+    fs::write(&source_path, assembly).expect("the assembly can be written");
+    fs::write(&object_path, object).expect("the object can be written");
+    let inputs = [source_path.as_ref(), object_path.as_ref()];
+    run(&FLAGS, &inputs, &elf_path)?;
+    Ok(Image::read(elf_path).expect("avr-gcc's ELF loads"))
 }

@@ -15,7 +15,7 @@ use simulated_uno::{Call, Fidelity, Image, Uno};
 
 use crate::robots::{robot, root};
 
-/// A simulated UNO with the firmware in flash and a person at its console.
+/// A simulated UNO with the firmware in flash, seen by a person at its console.
 pub struct FirmwareBench(SimulatedBoard);
 
 impl FirmwareBench {
@@ -47,7 +47,7 @@ impl FirmwareBench {
             .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
     }
 
-    /// Powers the board on, in the simulation corrected by the data sheet, and waits for the banner.
+    /// Powers the board on, in the simulation that follows the data sheet, and waits for the banner.
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
@@ -55,13 +55,13 @@ impl FirmwareBench {
         Self::boot_with(Fidelity::DataSheet)
     }
 
-    /// Powers the board on as [`FirmwareBench::boot`] does, in a chosen fidelity.
+    /// Powers the board on as [`FirmwareBench::boot`] does, with a chosen fidelity.
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
     pub fn boot_with(fidelity: Fidelity) -> Self {
         let board = SimulatedBoard::boot(&Self::elf(), fidelity, robot());
-        Self(value_or_panic(board))
+        Self(unwrap_or_panic(board))
     }
 
     /// Powers the board on without running it.
@@ -78,12 +78,19 @@ impl FirmwareBench {
         Self(board)
     }
 
+    /// Returns a bench around a program that is not the firmware, with servos on the pins of the paper's robot: D9,
+    /// D10, D11 and D3.
+    pub fn with_uno(uno: Uno) -> Self {
+        let pins = [9, 10, 11, 3].map(simulated_uno::Pin::d);
+        Self(SimulatedBoard::with_uno(uno, pins))
+    }
+
     /// Sends a line and returns its answer: see [`SimulatedBoard::say`].
     ///
     /// # Panics
     /// If the firmware does not answer.
     pub fn say(&mut self, line: &str) -> String {
-        value_or_panic(self.0.say(line))
+        unwrap_or_panic(self.0.say(line))
     }
 
     /// Sends a line and returns its notes and its answer: see [`SimulatedBoard::ask`].
@@ -91,7 +98,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware does not answer.
     pub fn ask(&mut self, line: &str) -> (Vec<String>, String) {
-        value_or_panic(self.0.ask(line))
+        unwrap_or_panic(self.0.ask(line))
     }
 
     /// Runs the firmware for some milliseconds: see [`SimulatedBoard::run_ms`].
@@ -99,7 +106,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware crashes, halts or is reset during this time.
     pub fn run_ms(&mut self, ms: u64) {
-        value_or_panic(self.0.run_ms(ms));
+        unwrap_or_panic(self.0.run_ms(ms));
     }
 
     /// Times the calls of a function: see [`SimulatedBoard::time_calls`].
@@ -107,7 +114,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the ELF has no such function, or more than one.
     pub fn time_calls(&mut self, function: &str, ms: u64) -> Vec<Call> {
-        value_or_panic(self.0.time_calls(function, ms))
+        unwrap_or_panic(self.0.time_calls(function, ms))
     }
 
     /// Runs the firmware for some frames and returns them: see [`SimulatedBoard::run_for_frames`].
@@ -115,7 +122,7 @@ impl FirmwareBench {
     /// # Panics
     /// If the firmware crashes, halts or is reset during these frames.
     pub fn run_for_frames(&mut self, count: u64) -> Vec<Frame> {
-        value_or_panic(self.0.run_for_frames(count))
+        unwrap_or_panic(self.0.run_for_frames(count))
     }
 }
 
@@ -133,13 +140,6 @@ impl DerefMut for FirmwareBench {
     }
 }
 
-fn value_or_panic<T>(result: Result<T, BoardError>) -> T {
+fn unwrap_or_panic<T>(result: Result<T, BoardError>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// Returns a bench around a program that is not the firmware, with servos on the pins of the paper's robot: D9,
-/// D10, D11 and D3.
-pub fn bench_of(uno: Uno) -> FirmwareBench {
-    let pins = [9, 10, 11, 3].map(simulated_uno::Pin::d);
-    FirmwareBench::with_board(SimulatedBoard::with_uno(uno, pins))
 }

@@ -1,11 +1,11 @@
-//! The number of random inputs and the duration of tests. Both are small on a developer's machine and large in
+//! The extent of the tests: the number of random inputs and the duration of dialogues. Both are small on a developer's machine and large in
 //! continuous integration.
 
 /// Returns a count of random inputs multiplied by the environment variable `LIZARD_FUZZ`, 1 by default.
 ///
 /// # Panics
 /// If `LIZARD_FUZZ` is not a whole number of at least 1.
-pub fn scaled(count: u64) -> u64 {
+pub fn scaled_count(count: u64) -> u64 {
     count * read_positive_number("LIZARD_FUZZ", 1)
 }
 
@@ -20,14 +20,14 @@ pub fn dialogue_minutes() -> u64 {
 /// Returns the whole number in an environment variable; `None` if it is not set, or empty.
 ///
 /// # Panics
-/// If it is not a whole number.
+/// If its value is not a whole number.
 pub fn read_number(name: &str) -> Option<u64> {
     let text = std::env::var(name).ok().filter(|text| !text.is_empty())?;
     let number = text.parse();
     Some(number.unwrap_or_else(|_| panic!("{name} is {text:?}; it must be a whole number")))
 }
 
-/// Reads a number from the environment. Rejects 0, because a test without inputs would check nothing.
+/// Returns the number in an environment variable, or a default if it is not set. Rejects 0, because a test without inputs would check nothing.
 fn read_positive_number(name: &str, default: u64) -> u64 {
     let number = read_number(name).unwrap_or(default);
     assert!(number > 0, "{name} is 0; it must be 1 or more");

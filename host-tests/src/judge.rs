@@ -2,7 +2,7 @@
 //!
 //! The simulated UNO is built on simavr, and an error of simavr can hide an error of the firmware. avr8js is written
 //! in another language by other people. Both simulators get the same image and the same bytes at the same cycles, and
-//! their outputs are compared: every pulse of every servo, and every byte of the console.
+//! their outputs are compared: every pulse of every servo and every byte of the console.
 
 use std::fmt;
 use std::io::ErrorKind;
@@ -16,7 +16,7 @@ use simulated_uno::{Edge, Image, Pin, SerialByte};
 
 use crate::robots::root;
 
-/// Cycles at the end of a run in which pulses are not compared: a pulse may have ended on one simulator, but not yet
+/// Cycles at the end of a run in which no pulses are compared: a pulse may have ended on one simulator, but not yet
 /// on the other.
 const IGNORED_END_CYCLES: u64 = 1_000;
 
@@ -26,7 +26,7 @@ const IGNORED_END_CYCLES: u64 = 1_000;
 /// to the cycle.
 pub const AVR8JS_LAG_CYCLES: i64 = 1;
 
-/// A pulse of a pin.
+/// A pulse at a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PinPulse {
     /// The pin.
@@ -62,6 +62,7 @@ pub struct Outputs {
 impl Outputs {
     /// Collects the outputs of a simulated UNO from its records since power-on.
     pub fn new(edges: &[Edge], sent: &[SerialByte], end_cycle: u64) -> Self {
+        // One entry for each Arduino pin number, 0 to 19.
         let mut rise_cycles = [None; 20];
         let mut pulses = Vec::new();
         for edge in edges {
@@ -139,7 +140,7 @@ pub fn run_on_avr8js(
 ///
 /// # Errors
 /// Fails if a program is missing or a test fails.
-pub fn run_own_tests() -> Result<String, String> {
+pub fn run_judge_tests() -> Result<String, String> {
     let folder = judge_folder().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
@@ -218,7 +219,7 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
     (run.eeprom.len() == 1024).then_some(run)
 }
 
-/// The result of comparing two simulators whose outputs agree.
+/// The result of a comparison of two simulators whose outputs agree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Agreement {
     /// The kind of records compared: pulses or bytes.
@@ -227,7 +228,7 @@ pub struct Agreement {
     pub count: usize,
     /// Cycles by which avr8js's first record is later than simavr's.
     pub offset_cycles: i64,
-    /// The largest deviation of a record's delay from `offset_cycles`.
+    /// The largest deviation of a record's delay from `offset_cycles`, cycles.
     pub jitter_cycles: u64,
 }
 
@@ -241,7 +242,7 @@ impl fmt::Display for Agreement {
         } = self;
         write!(
             f,
-            "{count} {record_kind} {offset_cycles} cycles later, {jitter_cycles} more or less"
+            "{count} {record_kind}, {offset_cycles} cycles later, with a jitter of {jitter_cycles} cycles"
         )
     }
 }
@@ -264,7 +265,7 @@ pub fn compare_pulses(
     let (simavr_pulses, avr8js_pulses) = (pulses_of_servos(simavr), pulses_of_servos(avr8js));
     let (Some(first_simavr), Some(first_avr8js)) = (simavr_pulses.first(), avr8js_pulses.first())
     else {
-        return Err("on one of them no servo gets a pulse".into());
+        return Err("on one simulator no servo gets a pulse".into());
     };
     let offset_cycles = first_avr8js.rise_cycle as i64 - first_simavr.rise_cycle as i64;
     let avr8js_pulses: Vec<PinPulse> = avr8js_pulses
@@ -286,7 +287,7 @@ pub fn compare_pulses(
     {
         return Err(format!(
             "pulse {index}: on simavr {simavr_pulse}, on avr8js {avr8js_pulse}, \
-             where all come {offset_cycles} cycles later"
+             less the constant delay of {offset_cycles} cycles"
         ));
     }
     let count = simavr_pulses.len().min(avr8js_pulses.len());
@@ -310,7 +311,7 @@ pub fn compare_pulses(
 pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, String> {
     let (Some(first_simavr), Some(first_avr8js)) = (simavr.sent.first(), avr8js.sent.first())
     else {
-        return Err("one of them is silent".into());
+        return Err("the console of one simulator is silent".into());
     };
     let offset_cycles = first_avr8js.cycle as i64 - first_simavr.cycle as i64;
     let pairs = simavr.sent.iter().zip(&avr8js.sent);

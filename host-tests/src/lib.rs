@@ -1,5 +1,5 @@
-//! Shared parts of the tests: the robots under test, a bench with the running firmware, random trouble, the
-//! comparison with a second simulator, and a compiler for small AVR programs.
+//! Shared parts of the tests: the robots under test, a bench with the running firmware, random fault-injection
+//! scenarios, the comparison with a second simulator, and a compiler for small AVR programs.
 
 pub mod avr_gcc;
 mod bench;
@@ -7,12 +7,12 @@ mod extent;
 pub mod judge;
 pub mod random_robot;
 mod robots;
+pub mod trouble;
 
-pub use bench::{FirmwareBench, bench_of};
-pub use extent::{dialogue_minutes, read_number, scaled};
+pub use bench::FirmwareBench;
+pub use extent::{dialogue_minutes, read_number, scaled_count};
 pub use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 pub use lizard_host::sim::lines::Line;
 pub use robots::{
     NamedRobot, paper_robot, patrolling_robot, rng, robot, robot_with_patrol, robots, root, seed,
 };
-pub mod trouble;

@@ -49,7 +49,7 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
             let has_moving_gait = robot.gaits().iter().any(|gait| gait.has_movement());
             has_moving_gait.then_some((text, robot))
         })
-        .expect("many drafts are valid robots")
+        .expect("one of the drafts is a valid robot")
 }
 
 /// Returns a robot with as many additional gaits as flash has room for. No room is left for the maps of certified
@@ -58,28 +58,34 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
 /// # Panics
 /// If the robot has no gait that moves, or is not valid.
 pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
-    let robot = Robot::parse(text).expect("a valid robot");
+    let robot = Robot::parse(text).expect("the text describes a valid robot");
     let gait = robot.gaits().iter().find(|gait| gait.has_movement());
-    let gait_name = gait.expect("a gait that moves").name();
+    let gait_name = gait.expect("the robot has a gait that moves").name();
     // Leaves room for one more waveform, which the additional gaits may need.
-    let taken_bytes = robot.content().section_bytes().len() + size_of::<Wave>();
-    let room_bytes = usize::from(SPACE_BYTES).saturating_sub(taken_bytes);
-    let gaits = (0..room_bytes / (size_of::<Gait>() + name_length)).map(|number| {
+    let used_bytes = robot.content().section_bytes().len() + size_of::<Wave>();
+    let free_bytes = usize::from(SPACE_BYTES).saturating_sub(used_bytes);
+    let gaits = (0..free_bytes / (size_of::<Gait>() + name_length)).map(|number| {
         let name = format!("{:n<1$}{number:02}", "on-and-o", name_length - 2);
         format!("[gait.{name}]\nlike = \"{gait_name}\"\n")
     });
-    Robot::parse(&format!("{text}{}", gaits.collect::<String>())).expect("more of the same gait")
+    Robot::parse(&format!("{text}{}", gaits.collect::<String>()))
+        .expect("copies of a valid gait are valid")
 }
 
 /// All properties of a robot except its gaits.
 struct Body {
+    /// The scale of all lengths; about 1 for a robot of the paper's size.
     scale: f64,
+    /// The lengths l0 to l19, mm.
     links: [f64; 20],
+    /// The servos' neutral angles, deg.
     neutral: [f64; 4],
     limits: Limits,
+    /// The keys of the tables of A1 to A4.
     servos: [String; 4],
     /// The pins of the four servos, then all other pins.
     pins: [&'static str; PINS.len()],
+    /// The speed limits `slew` and `gait_slew`, deg/s.
     slew: [f64; 2],
     lizard: Lizard,
 }
@@ -214,11 +220,15 @@ fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f6
     /// Minimum distance of every margin from its limit, a sine.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
-        let [left_deg, right_deg, rear_left_deg, rear_right_deg] =
-            [(); 4].map(|()| round(random_between(rng, 8.0, 80.0)));
+        let [
+            front_left_deg,
+            front_right_deg,
+            rear_left_deg,
+            rear_right_deg,
+        ] = [(); 4].map(|()| round(random_between(rng, 8.0, 80.0)));
         let neutral = [
-            180.0 - left_deg,
-            right_deg,
+            180.0 - front_left_deg,
+            front_right_deg,
             360.0 - rear_right_deg,
             180.0 + rear_left_deg,
         ];
@@ -237,7 +247,7 @@ fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f6
 /// Returns the text of a rail on an analogue pin without a servo, with random thresholds.
 fn random_rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     let free_pin = pins[4..].iter().find(|pin| pin.starts_with('A'));
-    let pin = free_pin.expect("six analogue pins and four servos");
+    let pin = free_pin.expect("six analogue pins are too many for four servos");
     let ratio = round(random_between(rng, 1.5, 3.0));
     // The highest voltage at the pin is 5 V.
     let slow = round(ratio * random_between(rng, 2.4, 4.0));

@@ -1,4 +1,4 @@
-//! Robots under test: those of the repository's files, and random ones.
+//! Robots under test: those of the repository's files, and random robots.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -43,7 +43,7 @@ pub fn robot() -> &'static Robot {
 /// If there is no room even with one gait.
 pub fn patrolling_robot() -> &'static Robot {
     static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
-        let text = std::fs::read_to_string(robot_file()).expect("a robot.toml");
+        let text = std::fs::read_to_string(robot_file()).expect("the robot file is readable");
         robot_with_patrol(&text).unwrap_or_else(|error| panic!("{error}"))
     });
     &ROBOT
@@ -95,15 +95,15 @@ pub fn robots() -> &'static [NamedRobot] {
         }];
         let folder = root().join("robots");
         let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
-            .expect("the folder robots/")
-            .map(|entry| entry.expect("a file").path())
+            .expect("the folder robots/ is readable")
+            .map(|entry| entry.expect("the folder entry is readable").path())
             .filter(|path| {
                 path.extension()
                     .is_some_and(|extension| extension == "toml")
             })
             .collect();
         files.sort();
-        assert!(!files.is_empty(), "{} has robots", folder.display());
+        assert!(!files.is_empty(), "{} has no robots", folder.display());
         robots.extend(files.iter().map(|path| {
             NamedRobot {
                 name: path

@@ -10,7 +10,7 @@ use fastrand::Rng;
 use lizard_core::memory::record::CONTENT_BYTES;
 use lizard_core::virtual_board::Eeprom;
 use lizard_fuzz::Board;
-use lizard_host_tests::{robot, scaled};
+use lizard_host_tests::{robot, scaled_count};
 
 #[path = "firmware/random_lines.rs"]
 mod random_lines;
@@ -29,7 +29,7 @@ fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
             scope.spawn(move || {
                 test(
                     &mut lizard_host_tests::rng(1000 + thread_number),
-                    scaled(INPUT_COUNT) / THREAD_COUNT,
+                    scaled_count(INPUT_COUNT) / THREAD_COUNT,
                 )
             })
         };

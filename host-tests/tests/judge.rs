@@ -5,8 +5,8 @@ use std::thread;
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::judge::{
-    AVR8JS_LAG_CYCLES, Outputs, PinPulse, compare_console, compare_pulses, run_on_avr8js,
-    run_own_tests,
+    AVR8JS_LAG_CYCLES, Outputs, PinPulse, compare_console, compare_pulses, run_judge_tests,
+    run_on_avr8js,
 };
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::CheckedGait;
@@ -169,7 +169,7 @@ fn two_simulators_agree_under_a_saturated_line() {
 
 #[test]
 fn the_known_faults_of_avr8js_still_exist_and_are_corrected() {
-    unwrap_or_panic(run_own_tests());
+    unwrap_or_panic(run_judge_tests());
 }
 
 fn pulse(rise_cycle: u64, width: u64) -> PinPulse {

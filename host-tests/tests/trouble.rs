@@ -1,4 +1,4 @@
-//! Tests with trouble at random moments of all activities. `make trouble` plays about a hundred times as many
+//! Tests with fault injection at random moments of all activities. `make trouble` plays about a hundred times as many
 //! scenarios.
 
 use std::collections::BTreeSet;
@@ -8,7 +8,7 @@ use lizard_host_tests::trouble::{Activity, Scenario, play, run_campaign};
 use lizard_host_tests::{FirmwareBench, patrolling_robot, robot_with_patrol, root, seed};
 use lizard_robot::Robot;
 
-/// The number of scenarios. Of thirteen scenarios, four are drives, and each of the other nine activities has one.
+/// The number of scenarios. Of thirteen scenarios, four are drives, and one belongs to each of the other nine activities.
 const SCENARIO_COUNT: u64 = 156;
 
 #[test]
@@ -26,7 +26,7 @@ fn trouble_at_any_moment_breaks_no_rule() {
     let first_failure = summary.failures.first();
     assert!(
         summary.failures.is_empty(),
-        "{}  alone: make trouble SEED={} ONLY={}\n\n{summary}",
+        "{}  to run it alone: make trouble SEED={} ONLY={}\n\n{summary}",
         first_failure.map_or_else(String::new, ToString::to_string),
         seed(),
         first_failure.map_or(0, |failure| failure.scenario.number),
@@ -47,11 +47,11 @@ fn trouble_at_any_moment_breaks_no_rule() {
 #[test]
 fn seed_and_number_determine_a_scenario() {
     for number in 0..100 {
-        let scenario = Scenario::of(7, number, patrolling_robot());
-        assert_eq!(scenario, Scenario::of(7, number, patrolling_robot()));
+        let scenario = Scenario::generate(7, number, patrolling_robot());
+        assert_eq!(scenario, Scenario::generate(7, number, patrolling_robot()));
         assert_ne!(
             scenario.steps,
-            Scenario::of(8, number, patrolling_robot()).steps
+            Scenario::generate(8, number, patrolling_robot()).steps
         );
     }
 }
@@ -60,7 +60,7 @@ fn seed_and_number_determine_a_scenario() {
 fn most_patrols_of_the_scenarios_reach_the_wait_for_a_wall() {
     let image = FirmwareBench::image_with(patrolling_robot());
     let scenarios =
-        (0..SCENARIO_COUNT).map(|number| Scenario::of(seed(), number, patrolling_robot()));
+        (0..SCENARIO_COUNT).map(|number| Scenario::generate(seed(), number, patrolling_robot()));
     let patrols = scenarios.filter(|scenario| scenario.activity == Activity::Patrolling);
     let reaches_wall_wait = |scenario: &Scenario| {
         let record = play(&image, patrolling_robot(), scenario);
@@ -69,14 +69,15 @@ fn most_patrols_of_the_scenarios_reach_the_wait_for_a_wall() {
             .iter()
             .any(|line| line.text == "# waiting for nose")
     };
-    let walked_count = patrols.filter(reaches_wall_wait).count() as u64;
-    assert!(walked_count > SCENARIO_COUNT / 13 / 2, "{walked_count}");
+    let walking_count = patrols.filter(reaches_wall_wait).count() as u64;
+    assert!(walking_count > SCENARIO_COUNT / 13 / 2, "{walking_count}");
 }
 
 #[test]
 fn a_robot_without_room_for_a_routine_patrols_with_fewer_gaits() {
-    let mut text = std::fs::read_to_string(root().join("robot.toml")).expect("a robot.toml");
-    let mut full_robot = Robot::parse(&text).expect("a robot");
+    let mut text =
+        std::fs::read_to_string(root().join("robot.toml")).expect("robot.toml is readable");
+    let mut full_robot = Robot::parse(&text).expect("robot.toml is valid");
     for number in 0.. {
         text += &format!("[gait.more-{number}]\nlike = \"walk\"\n");
         match Robot::parse(&text) {
@@ -84,8 +85,9 @@ fn a_robot_without_room_for_a_routine_patrols_with_fewer_gaits() {
             Err(_) => break,
         }
     }
-    let text = text.rsplit_once("[gait.").expect("a gait").0;
-    let robot_with_fewer_gaits = robot_with_patrol(text).expect("room for a routine");
+    let text = text.rsplit_once("[gait.").expect("the text has a gait").0;
+    let robot_with_fewer_gaits =
+        robot_with_patrol(text).expect("without some gaits there is room for a routine");
     assert!(robot_with_fewer_gaits.gaits().len() < full_robot.gaits().len());
     assert!(robot_with_fewer_gaits.gaits().len() > 5);
     assert!(robot_with_fewer_gaits.routine("patrol").is_some());

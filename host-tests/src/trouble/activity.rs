@@ -1,4 +1,4 @@
-//! Activities of the robot during which the trouble of a scenario begins.
+//! Activities of the robot, during which the trouble of a scenario begins.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub enum Activity {
     Holding,
     /// The robot moves from one pose to another.
     Moving,
-    /// The robot walks.
+    /// The robot walks or performs another gait.
     Cycling,
     /// The robot writes the EEPROM.
     Saving,
@@ -44,7 +44,7 @@ impl Activity {
 
     /// Returns the activity of the scenario with this number. In four of thirteen scenarios, a person drives the robot.
     #[must_use]
-    pub fn of(number: u64) -> Self {
+    pub fn of_scenario(number: u64) -> Self {
         let index = (number % 13) as usize;
         Self::ALL.get(index).copied().unwrap_or(Self::Driving)
     }

@@ -15,7 +15,7 @@ use super::judge::broken_rules;
 use super::scenario::Scenario;
 use super::stage::play;
 
-/// A scenario in which the firmware broke a rule.
+/// A scenario in which the firmware broke at least one rule.
 #[derive(Debug, Clone)]
 pub struct Failure {
     /// The scenario.
@@ -104,16 +104,17 @@ pub fn run_campaign(
                     if number >= count {
                         return;
                     }
-                    let scenario = Scenario::of(seed, number, robot);
+                    let scenario = Scenario::generate(seed, number, robot);
                     let (cycles, failure) = judge(image, robot, &scenario);
                     report_progress(
                         done_count.fetch_add(1, Ordering::Relaxed) + 1,
                         failure.as_ref(),
                     );
                     let mut summary = summary.lock().expect("no thread has panicked");
-                    let tally = summary.activities.entry(scenario.activity).or_default();
-                    tally.0 += 1;
-                    tally.1 += u64::from(failure.is_some());
+                    let counts = summary.activities.entry(scenario.activity).or_default();
+                    let (played_count, failed_count) = counts;
+                    *played_count += 1;
+                    *failed_count += u64::from(failure.is_some());
                     summary.cycles += cycles;
                     summary.failures.extend(failure);
                 }

@@ -14,7 +14,7 @@ use super::record::{MS, Record, Span};
 use super::setup;
 
 /// Average number of bytes on the wire per byte that loses its stop bit.
-const BYTES_PER_SPOILT_BYTE: u16 = 300;
+const BYTES_PER_GARBLED_BYTE: u16 = 300;
 
 /// Index of the radio module among the two senders on the wire to the board.
 const RADIO: usize = 0;
@@ -35,11 +35,12 @@ pub struct Drive<'a> {
     partial_line: String,
     /// The cycle until which the phone's screen is locked.
     locked_until_cycle: u64,
+    /// True once the phone is out of range.
     has_left: bool,
 }
 
 impl<'a> Drive<'a> {
-    /// Begins a drive with a person who has just connected.
+    /// Starts a drive with a person who has just connected.
     pub fn new(link: RadioLink, robot: &'a Robot) -> Self {
         let start = Instant::now();
         Self {
@@ -55,13 +56,13 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Ends the drive at the cycle `now`: the phone moves out of range, and the module stays on the wire.
+    /// Ends the drive at the cycle `now`: the phone moves out of range, while the module stays on the wire.
     pub fn leave(&mut self, now: u64) {
         self.has_left = true;
         self.radio.leave(now);
     }
 
-    /// Sends bytes by the cable, beginning at the cycle `now`.
+    /// Sends bytes by the cable from the cycle `now` on.
     pub fn send_by_cable(&mut self, bytes: &[u8], now: u64) {
         self.wire.write(CABLE, bytes, now);
     }
@@ -76,8 +77,8 @@ impl<'a> Drive<'a> {
         // The wire samples the bytes at the chip's baud rate, so the board receives them at this rate.
         uno.set_baud(chip_baud);
         for wire_byte in self.wire.receive(now, chip_baud) {
-            let is_spoilt = !self.has_left && self.rng.u16(..BYTES_PER_SPOILT_BYTE) == 0;
-            match wire_byte.filter(|_| !is_spoilt) {
+            let is_garbled = !self.has_left && self.rng.u16(..BYTES_PER_GARBLED_BYTE) == 0;
+            match wire_byte.filter(|_| !is_garbled) {
                 Some(byte) => uno.send(&[byte]),
                 None => uno.send_with_framing_error(&[0]),
             }
@@ -87,7 +88,7 @@ impl<'a> Drive<'a> {
         if self.has_left || self.locked_until_cycle > now {
             return;
         }
-        self.talk(now, record);
+        self.use_phone(now, record);
         if self.radio.is_linked() {
             match record.radio_spans.last_mut() {
                 Some(span) if span.end + 2 * MS > now => span.end = now,
@@ -99,12 +100,13 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Lets the phone read the received lines, and the person do something at random.
-    fn talk(&mut self, now: u64, record: &mut Record) {
+    /// Lets the phone read the received lines, and the person act at random.
+    fn use_phone(&mut self, now: u64, record: &mut Record) {
         while let Some((line, rest)) = self.partial_line.split_once('\n') {
             self.session.receive(line.trim_end_matches('\r'));
             self.partial_line = rest.to_owned();
         }
+        // A cycle takes 62.5 ns.
         let instant = self.start + Duration::from_nanos(now * 125 / 2);
         match self.rng.u16(..4_000) {
             0 => self.locked_until_cycle = now + self.rng.u64(..3_000) * MS,

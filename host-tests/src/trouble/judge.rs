@@ -7,23 +7,23 @@ use lizard_host::patrol::PATROL;
 use lizard_host::sim::lines::Line;
 use lizard_robot::Robot;
 use lizard_rules::{BrokenRule, Event, Limits, Observer, Pulse, Rule, Time, led};
-use simulated_uno::{Pin, ResetCause, State};
+use simulated_uno::{CYCLES_PER_US, Pin, ResetCause, State};
 
 use crate::FRAME_CYCLES;
 
 use super::record::{Exchange, MS, Record, Span};
 use super::scenario::Scenario;
-use super::setup::WIDE_SCALE;
+use super::setup::LARGE_SCALE;
 
 /// The pin of the LED.
 const LED: Pin = Pin::d(13);
 
-/// Cycles of a byte that the board sends on the serial line.
-const BYTE_CYCLES: u64 = 1_360;
+/// Cycles in which the board sends a byte on the serial line: ten bits of 136 cycles.
+const SENT_BYTE_CYCLES: u64 = 1_360;
 
 /// Returns the limits for a scenario's robot.
 fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
-    let cycles_of_us = |us: f64| (us * 16.0).round() as u32;
+    let cycles_of_us = |us: f64| (us * CYCLES_PER_US as f64).round() as u32;
     let speed_limits = robot.speed_limits();
     let max_speed = speed_limits.slew.max(speed_limits.gait_slew);
     let mentions = |text: &str| {
@@ -31,8 +31,8 @@ fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
         steps.any(|step| step.to_string().contains(text))
     };
     // If the scenario changes the scale of a servo, the larger scale sets the limit.
-    let scale_text = if mentions("scale ") { WIDE_SCALE } else { "0" };
-    let scale_in_scenario: f64 = scale_text.parse().expect("a number");
+    let scale_text = if mentions("scale ") { LARGE_SCALE } else { "0" };
+    let scale_in_scenario: f64 = scale_text.parse().expect("the scale is a number");
     let servos = robot.servos().each_ref();
     Limits {
         // Allows a cycle of rounding at the start and at the end of a pulse, and half an angle step.
@@ -76,7 +76,7 @@ pub fn broken_rules(record: &Record, robot: &Robot, scenario: &Scenario) -> Vec<
         (Rule::RefusalChangesNothing, check_refusals(record)),
         (Rule::LedShowsFault, check_led(record)),
         (Rule::PulsePeriod, check_pulse_times(record)),
-        (Rule::OnlySentLines, check_orders_were_sent(record)),
+        (Rule::OnlySentLines, check_only_sent_lines(record)),
         (Rule::StopRepeated, check_stop_is_answered(record)),
     ];
     for (rule, result) in checks {
@@ -147,12 +147,12 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         );
     }
     for line in &record.printed_lines {
-        let length_cycles = BYTE_CYCLES * line.text.len() as u64;
+        let length_cycles = SENT_BYTE_CYCLES * line.text.len() as u64;
         let start = time_of(line.cycle.saturating_sub(length_cycles));
         add(line.cycle, Event::LinePrinted(start, &line.text));
     }
     for exchange in &record.exchanges {
-        let (asked_at, line) = (time_of(exchange.asked_cycle), exchange.line.as_str());
+        let (asked_at, line) = (time_of(exchange.sent_cycle), exchange.line.as_str());
         let effect = exchange.effect;
         events.push(match &exchange.answer {
             Some(Line { cycle, text, .. }) => (
@@ -176,7 +176,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     for write in &record.eeprom_writes {
         events.push((time_of(write.cycle), Event::ByteWritten));
     }
-    // Some rules have time limits, which may end when nothing else is observed.
+    // Some rules have time limits, which may expire while nothing else is observed.
     let tick_cycles = (0..record.end_cycle).step_by(100 * MS as usize);
     events.extend(tick_cycles.map(|cycle| (time_of(cycle), Event::TimePasses)));
     events.push((time_of(record.end_cycle), Event::TimePasses));
@@ -184,7 +184,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
     events
 }
 
-/// Checks that the firmware has neither crashed nor halted.
+/// Checks that the program has neither crashed nor halted.
 fn check_alive(record: &Record) -> Result<(), String> {
     match &record.state {
         Some(State::Alive) => Ok(()),
@@ -303,7 +303,7 @@ fn check_pulse_times(record: &Record) -> Result<(), String> {
 }
 
 /// Checks that the board carried out only lines that were sent.
-fn check_orders_were_sent(record: &Record) -> Result<(), String> {
+fn check_only_sent_lines(record: &Record) -> Result<(), String> {
     for line in &record.printed_lines {
         // After a reset, the banner may follow an incomplete answer in the same line.
         let Some(answered_line) = line
@@ -381,8 +381,8 @@ fn check_stop_is_answered(record: &Record) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that the LED blinks the code of the fault that each `status` reports, since the last change: a reported
-/// fault, an order or a start of the program.
+/// Checks that, from the last change until each `status`, the LED blinks the code of the fault that this `status`
+/// reports. A change is a reported fault, an order or a start of the program.
 fn check_led(record: &Record) -> Result<(), String> {
     let led_edges = record.edges.iter().filter(|edge| edge.pin == LED);
     let led_edges: Vec<(Time, bool)> = led_edges

@@ -32,7 +32,7 @@ impl Span {
 #[derive(Debug, Clone)]
 pub struct Exchange {
     /// The cycle at which the line was sent.
-    pub asked_cycle: u64,
+    pub sent_cycle: u64,
     /// The line.
     pub line: String,
     /// The effect on the servos if the board carries out the line.
@@ -113,7 +113,7 @@ pub struct Record {
     pub stalls: Vec<Span>,
     /// The spans in which interrupts were blocked.
     pub interrupt_blocks: Vec<Span>,
-    /// The cycles at which RESET was pulled low, the supply was cut, or it fell below the brown-out level.
+    /// The cycles at which RESET was pulled low, or the supply was cut or fell below the brown-out level.
     pub cut_cycles: Vec<u64>,
     /// The cycle at which the scenario ended.
     pub end_cycle: u64,
@@ -159,12 +159,12 @@ impl Record {
             .filter(|received| received.is_order())
             .map(|received| {
                 let matches_line = |exchange: &&Exchange| {
-                    exchange.line == received.text && exchange.asked_cycle <= received.cycle
+                    exchange.line == received.text && exchange.sent_cycle <= received.cycle
                 };
                 let exchange = self.exchanges.iter().rev().find(matches_line);
                 // The exchange belongs to this line only if the line arrived within the time that sending takes.
                 let exchange =
-                    exchange.filter(|exchange| received.cycle - exchange.asked_cycle < 10 * MS);
+                    exchange.filter(|exchange| received.cycle - exchange.sent_cycle < 10 * MS);
                 let answer = exchange.and_then(|exchange| exchange.answer.as_ref());
                 let outcome = answer.and_then(|answer| match answer.text.get(..3)? {
                     "ok " => Some(true),
@@ -179,7 +179,7 @@ impl Record {
     /// in the next 300 ms. Returns `Some(true)` if the board carried out the line, `Some(false)` if it refused the
     /// line, `None` if the outcome is unknown.
     fn derive_outcome(&self, received: &ReceivedLine) -> Option<bool> {
-        let (from, to) = (received.cycle, received.cycle + 300 * MS);
+        let (start, end) = (received.cycle, received.cycle + 300 * MS);
         // A reset may have cut off the beginning of the line.
         let is_ok = |text: &str| {
             let echo = text.strip_prefix("ok ");
@@ -188,14 +188,14 @@ impl Record {
         let next_lines = self
             .printed_lines
             .iter()
-            .filter(|line| (from..to).contains(&line.cycle));
+            .filter(|line| (start..end).contains(&line.cycle));
         if next_lines.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }
         // After these errors, the board refuses every order.
         let is_refusal = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
         let is_refused =
-            !self.is_troubled(from, to) && next_lines.clone().any(|line| is_refusal(&line.text));
+            !self.is_troubled(start, end) && next_lines.clone().any(|line| is_refusal(&line.text));
         is_refused.then_some(false)
     }
 
@@ -203,7 +203,7 @@ impl Record {
     #[must_use]
     pub fn is_saved(&self, cycle: u64) -> bool {
         let is_accepted_save = |exchange: &Exchange| {
-            let sent_span = exchange.asked_cycle..exchange.asked_cycle + 10 * MS;
+            let sent_span = exchange.sent_cycle..exchange.sent_cycle + 10 * MS;
             exchange.line == "save" && exchange.is_accepted() && sent_span.contains(&cycle)
         };
         self.exchanges.iter().any(is_accepted_save)
@@ -224,12 +224,12 @@ impl Record {
         lines.any(|line| line.is_answer() && (search_start..cycle).contains(&line.cycle))
     }
 
-    /// True if a reset, a power cut or a disturbance came within `from..to`.
+    /// True if there was a reset, a power cut or a disturbance within `start..end`.
     #[must_use]
-    pub fn is_troubled(&self, from: u64, to: u64) -> bool {
-        let span = from..to;
-        self.starts.iter().any(|start| span.contains(&start.cycle))
+    pub fn is_troubled(&self, start: u64, end: u64) -> bool {
+        let span = start..end;
+        self.starts.iter().any(|reset| span.contains(&reset.cycle))
             || self.cut_cycles.iter().any(|cut| span.contains(cut))
-            || self.is_disturbed(from, to)
+            || self.is_disturbed(start, end)
     }
 }

@@ -1,4 +1,4 @@
-//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and then commands that check
+//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and commands that finally check
 //! the robot.
 
 mod troubles;
@@ -51,11 +51,11 @@ impl fmt::Display for Scenario {
 }
 
 impl Scenario {
-    /// Makes the scenario with this number among the scenarios of a seed.
+    /// Generates the scenario with this number among the scenarios of a seed.
     #[must_use]
-    pub fn of(seed: u64, number: u64, robot: &Robot) -> Self {
+    pub fn generate(seed: u64, number: u64, robot: &Robot) -> Self {
         let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
-        let activity = Activity::of(number);
+        let activity = Activity::of_scenario(number);
         let mut script = Script::new(&mut rng, robot);
         script.start_activity(activity);
         script.add_trouble(activity);
@@ -281,7 +281,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Lets a person drive by radio. A quarter of these scenarios begin with noise, as from a radio module without a
+    /// Lets a person start to drive by radio. A quarter of these scenarios begin with noise, as from a radio module without a
     /// phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {

@@ -1,5 +1,5 @@
-//! Random commands, and the settings that a scenario makes before trouble begins. The settings are saved or unsaved:
-//! trims, scales and directions of servos, the gait after power-on, the `deadman` time, a servo's travel.
+//! Random commands, and the random settings of a scenario before its trouble begins. The settings are saved or unsaved
+//! trims, scales and directions of servos, the gait after power-on, the `deadman` time, or a servo's travel.
 
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
@@ -8,7 +8,7 @@ use lizard_robot::Robot;
 use super::record::MS;
 use super::step::Step;
 
-/// Returns the command for a random pose within 9 degrees of the neutral pose.
+/// Returns the command for a random pose in which each servo is within 9 degrees of neutral.
 pub fn random_pose(rng: &mut Rng, robot: &Robot) -> String {
     let servos = robot.servos();
     let angles: Vec<String> = (0..4)
@@ -20,7 +20,7 @@ pub fn random_pose(rng: &mut Rng, robot: &Robot) -> String {
     format!("pose {}", angles.join(" "))
 }
 
-/// Returns the command for a random trim.
+/// Returns the command for a random trim of a random servo.
 pub fn random_trim(rng: &mut Rng) -> String {
     let servo = rng.u8(1..=4);
     let degrees = f64::from(rng.i32(-1_500..1_500)) / 100.0;
@@ -38,15 +38,15 @@ fn limit_command(servo: usize, degrees: f64, robot: &Robot) -> String {
     format!("limit {} {low:.2} {high:.2}", servo + 1)
 }
 
-/// A servo scale far from the scale in robot.toml, us per degree.
-pub const WIDE_SCALE: &str = "17.77";
+/// A servo scale that is larger than any in robot.toml, us per degree, as the console takes it.
+pub const LARGE_SCALE: &str = "17.77";
 
 /// Returns a random command that makes the main loop apply the servos' settings again.
 pub fn random_adjustment(rng: &mut Rng) -> String {
     match rng.u8(0..5) {
         0 => "load".into(),
         1 => "factory".into(),
-        2 => format!("scale {} {WIDE_SCALE}", rng.u8(1..=4)),
+        2 => format!("scale {} {LARGE_SCALE}", rng.u8(1..=4)),
         3 => format!(
             "dir {} {}",
             rng.u8(1..=4),
@@ -56,7 +56,7 @@ pub fn random_adjustment(rng: &mut Rng) -> String {
     }
 }
 
-/// Returns the steps that make settings of a random kind. In about half of the cases, there are no steps.
+/// Returns the steps that change settings of a random kind; in about half of the cases, no steps.
 pub fn random_settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
     let wait = |ms: u64| Step::Wait(ms * MS);
     match rng.u8(0..16) {
@@ -92,7 +92,7 @@ pub fn random_settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         }
         // Changes the scale and the trim of every servo.
         8 => {
-            let scales = (1..=4).map(|servo| say(format!("scale {servo} {WIDE_SCALE}")));
+            let scales = (1..=4).map(|servo| say(format!("scale {servo} {LARGE_SCALE}")));
             let trims = (1..=4).map(|servo| say(format!("trim {servo} 3.3")));
             let mut steps: Vec<Step> = scales.chain(trims).collect();
             steps.extend([wait(300), say("save"), wait(50)]);

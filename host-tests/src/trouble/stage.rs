@@ -1,4 +1,4 @@
-//! Player of scenarios. Plays a scenario on a simulated UNO and records everything that is visible from outside.
+//! Player of scenarios: plays a scenario on a simulated UNO and records everything that is visible from outside.
 
 use fastrand::Rng;
 use lizard_core::console::command::{effect, parse};
@@ -30,13 +30,13 @@ const LOADED_WEAK_MV: f64 = 2_400.0;
 /// The voltage below which the chip is held in reset, mV, including the largest hysteresis.
 const BROWN_OUT_MV: f64 = 2_725.0;
 
-/// Cycles of a byte sent to the board at 115 200 baud.
-const BYTE_CYCLES: u64 = 1_389;
+/// Cycles that a byte sent to the board takes at 115 200 baud.
+const RECEIVED_BYTE_CYCLES: u64 = 1_389;
 
-/// Cycles for which a servo counts as having pulses after the start of its last pulse.
+/// Cycles after the start of its last pulse for which a servo counts as having pulses.
 const RECENT_CYCLES: u64 = 25 * CYCLES_PER_MS;
 
-/// The state while a scenario is played: the board, the drive by radio if there is one, and the record so far.
+/// The state of a scenario that is being played: the board, the drive by radio if there is one, and the record so far.
 struct Stage<'a> {
     robot: &'a Robot,
     uno: Uno,
@@ -47,6 +47,7 @@ struct Stage<'a> {
     record: Record,
     /// The number of starts of the program that have been handled.
     start_count: usize,
+    /// True while the supply falls whenever three servos have pulses.
     is_supply_weak: bool,
     /// The cycle at which each servo's latest pulse began.
     latest_pulse_cycles: [Option<u64>; 4],
@@ -164,7 +165,7 @@ impl Stage<'_> {
     /// Sends random bytes to the board: in half of the cases as many as the line can carry in `cycles`, otherwise at
     /// most a twentieth as many.
     fn add_noise(&mut self, cycles: u64) {
-        let max_count = cycles / BYTE_CYCLES;
+        let max_count = cycles / RECEIVED_BYTE_CYCLES;
         let count = if self.noise_rng.bool() {
             max_count
         } else {
@@ -185,13 +186,14 @@ impl Stage<'_> {
         }
     }
 
+    /// Sends a line, waits up to [`TIMEOUT_MS`] for its answer and records both. Returns the answer.
     fn say(&mut self, line: &str) -> Option<String> {
-        let asked_cycle = self.uno.cycle();
+        let sent_cycle = self.uno.cycle();
         self.record_events();
         let old_line_count = self.record.printed_lines.len();
         self.send(line);
         let mut answer = None;
-        let end_cycle = asked_cycle + TIMEOUT_MS * CYCLES_PER_MS;
+        let end_cycle = sent_cycle + TIMEOUT_MS * CYCLES_PER_MS;
         while answer.is_none() && self.uno.cycle() < end_cycle && self.is_alive() {
             self.run_to(self.uno.cycle() + CYCLES_PER_MS);
             let new_lines = &self.record.printed_lines[old_line_count..];
@@ -199,7 +201,7 @@ impl Stage<'_> {
         }
         let text = answer.as_ref().map(|line| line.text.clone());
         self.record.exchanges.push(Exchange {
-            asked_cycle,
+            sent_cycle,
             line: line.to_owned(),
             effect: effect(line, self.robot.firmware()),
             answer,
@@ -321,13 +323,13 @@ impl Stage<'_> {
 
 /// Makes the record of a received line from its bytes and the cycle at which its line end arrived.
 fn record_of_line(bytes: &[u8], cycle: u64, robot: &Robot) -> ReceivedLine {
-    let is_whole = bytes.len() <= MAX_LINE_BYTES && bytes.is_ascii();
+    let is_undamaged = bytes.len() <= MAX_LINE_BYTES && bytes.is_ascii();
     let text = String::from_utf8_lossy(bytes.trim_ascii()).to_ascii_lowercase();
     let is_known = parse(text.as_bytes(), robot.firmware()).is_ok();
     ReceivedLine {
         cycle,
         effect: effect_of_suffix(&text, robot),
-        is_command: is_whole && is_known,
+        is_command: is_undamaged && is_known,
         text,
     }
 }

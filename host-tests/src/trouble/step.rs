@@ -25,9 +25,9 @@ pub enum Step {
     PowerCycle,
     /// Sets the supply voltage, mV.
     Supply(u16),
-    /// Connects a weak supply if true, which falls to 2.4 V whenever three servos have pulses; a good supply if false.
+    /// Connects a weak supply, which falls to 2.4 V whenever three servos have pulses, if true; a good supply if false.
     WeakSupply(bool),
-    /// Lets a person begin to drive by radio. The scenario's own lines still go through the cable.
+    /// Lets a person begin to drive by radio. The scenario's own lines are then sent by cable.
     Drive(RadioLink),
     /// Ends the drive: the person leaves with the phone.
     Leave,
@@ -44,7 +44,7 @@ impl fmt::Display for Step {
         match self {
             Self::Say(line) => write!(f, "say {line}"),
             Self::Send(line) => write!(f, "send {line} and do not wait"),
-            Self::Order(line) => write!(f, "say {line}; if it rests, say stand"),
+            Self::Order(line) => write!(f, "say {line}; if the robot rests, say stand"),
             Self::Wait(cycles) => write!(f, "wait {}", CyclesAsTime(*cycles)),
             Self::Stall(cycles) => write!(f, "stall main for {}", CyclesAsTime(*cycles)),
             Self::BlockInterrupts(cycles) => {

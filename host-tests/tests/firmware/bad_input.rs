@@ -23,7 +23,7 @@ fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> Fi
     let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
-    for second in 0..lizard_host_tests::scaled(FLOOD_SECONDS) {
+    for second in 0..lizard_host_tests::scaled_count(FLOOD_SECONDS) {
         let mut sent_bytes = Vec::new();
         while sent_bytes.len() < BYTES_PER_SECOND {
             sent_bytes.extend(next_bytes(&mut rng));

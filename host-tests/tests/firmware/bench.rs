@@ -1,6 +1,6 @@
 //! Tests of the bench itself, on a small program that answers lines and drives four servos as the firmware does.
 
-use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, avr_gcc::compile_c, bench_of};
+use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, avr_gcc::compile_c};
 use simulated_uno::{Fidelity, Uno};
 
 /// Program that times slots of 4 ms in a busy loop, without interrupts. The pulses of A1 to A4 are 1000, 1200, 1400
@@ -41,10 +41,8 @@ const SERVO_PROGRAM: &str = r##"
     }"##;
 
 fn bench() -> FirmwareBench {
-    bench_of(Uno::with_image(
-        compile_c(SERVO_PROGRAM),
-        Fidelity::DataSheet,
-    ))
+    let uno = Uno::with_image(compile_c(SERVO_PROGRAM), Fidelity::DataSheet);
+    FirmwareBench::with_uno(uno)
 }
 
 #[test]
@@ -91,7 +89,7 @@ fn each_frame_holds_one_pulse_of_each_servo() {
 
 #[test]
 fn a_function_of_the_program_is_timed_by_its_name() {
-    let mut bench = bench_of(Uno::with_image(
+    let mut bench = FirmwareBench::with_uno(Uno::with_image(
         compile_c(
             "#include <avr/io.h>
             __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(1000); }

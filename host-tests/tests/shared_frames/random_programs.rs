@@ -9,7 +9,7 @@ use std::thread;
 
 use fastrand::Rng;
 use lizard_host_tests::avr_gcc::{compile_to_object, link};
-use lizard_host_tests::scaled;
+use lizard_host_tests::scaled_count;
 use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
@@ -184,7 +184,7 @@ fn find_differences(seed: u64) -> Option<(Vec<usize>, bool)> {
 
 #[test]
 fn random_functions_with_arguments_on_the_stack_compute_the_same() {
-    let seed_count = scaled(PROGRAM_COUNT);
+    let seed_count = scaled_count(PROGRAM_COUNT);
     let next_seed = AtomicU64::new(0);
     let take_seed = || Some(next_seed.fetch_add(1, Relaxed)).filter(|&seed| seed < seed_count);
     let run_worker = || -> Vec<_> {

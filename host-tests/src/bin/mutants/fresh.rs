@@ -1,5 +1,5 @@
-//! Generated mistakes: one for every operator, number and call in the firmware's code, in random order, so that the
-//! first of them are a random sample.
+//! Generated mistakes: one for every operator, number and call in the firmware's code. They are shuffled, so the first
+//! of them are a random sample.
 
 use fastrand::Rng;
 
@@ -18,8 +18,8 @@ const TEXT_FILES: [&str; 8] = [
     "word.rs",
 ];
 
-/// Parts of the paths of files in which no mistake is generated: they do not run on the chip, or contain tables of
-/// another program.
+/// Parts of the paths of files in which no mistake is generated: these files do not run on the chip, or contain tables
+/// that another program has generated.
 const EXCLUDED_PATH_PARTS: [&str; 7] = [
     "tests",
     "finder/misread.rs",
@@ -30,8 +30,8 @@ const EXCLUDED_PATH_PARTS: [&str; 7] = [
     "section/seal.rs",
 ];
 
-/// Operators, each with its replacement.
-const SWAPS: [(&str, &str); 19] = [
+/// Operators, constants and methods, each with the wrong one that replaces it.
+const REPLACEMENTS: [(&str, &str); 19] = [
     (" == ", " != "),
     (" != ", " == "),
     (" < ", " <= "),
@@ -105,7 +105,7 @@ pub fn mutants_in(file: &str, text: &str) -> Vec<Mutant> {
 fn changes_of(line: &str) -> Vec<(String, String)> {
     let code = line.split("//").next().unwrap_or_default();
     let trimmed = code.trim();
-    let skipped_starts = [
+    let excluded_line_starts = [
         "#",
         "use ",
         "assert!",
@@ -115,33 +115,33 @@ fn changes_of(line: &str) -> Vec<(String, String)> {
         "impl",
     ];
     if trimmed.contains('"')
-        || skipped_starts
+        || excluded_line_starts
             .iter()
             .any(|start| trimmed.starts_with(start))
     {
         return Vec::new();
     }
     let mut changes = Vec::new();
-    let mut swap = |offset: usize, old: &str, new: &str| {
+    let mut replace = |offset: usize, old: &str, new: &str| {
         let changed_line = format!("{}{new}{}", &line[..offset], &line[offset + old.len()..]);
         changes.push((
             format!("`{}` for `{}`", new.trim(), old.trim()),
             changed_line,
         ));
     };
-    for (old, new) in SWAPS {
+    for (old, new) in REPLACEMENTS {
         for (offset, _) in code.match_indices(old) {
-            swap(offset, old, new);
+            replace(offset, old, new);
         }
     }
     for (offset, number) in numbers_in(code) {
         let next_number = number.parse::<u32>().map_or(1, |number| number + 1);
-        swap(offset, number, &next_number.to_string());
+        replace(offset, number, &next_number.to_string());
     }
     let is_call = trimmed.ends_with(';') && trimmed.contains('(') && trimmed.contains('.');
-    let excluded_starts = ["let ", "return ", "pub ", "}", ")", "."];
+    let excluded_call_starts = ["let ", "return ", "pub ", "}", ")", "."];
     if is_call
-        && !excluded_starts
+        && !excluded_call_starts
             .iter()
             .any(|start| trimmed.starts_with(start))
     {
@@ -153,11 +153,11 @@ fn changes_of(line: &str) -> Vec<(String, String)> {
 /// Returns the decimal numbers in a line of code, each with its byte offset.
 fn numbers_in(code: &str) -> Vec<(usize, &str)> {
     let mut numbers = Vec::new();
-    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
-    for piece in code.split(|c: char| !is_name(c)) {
-        let offset = piece.as_ptr() as usize - code.as_ptr() as usize;
-        if !piece.is_empty() && piece.bytes().all(|byte| byte.is_ascii_digit()) {
-            numbers.push((offset, piece));
+    let is_word_char = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
+    for word in code.split(|c: char| !is_word_char(c)) {
+        let offset = word.as_ptr() as usize - code.as_ptr() as usize;
+        if !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit()) {
+            numbers.push((offset, word));
         }
     }
     numbers
@@ -169,11 +169,11 @@ pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
     mutants
 }
 
-/// Returns the 95 % Wilson interval of a rate: of 20 such intervals, about 19 contain the true rate.
-pub fn wilson_interval(noticed: usize, tried: usize) -> (f64, f64) {
+/// Returns the 95 % Wilson confidence interval of a rate: of 20 such intervals, about 19 contain the true rate.
+pub fn wilson_interval(caught_count: usize, tried_count: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
-    let n = tried.max(1) as f64;
-    let rate = noticed as f64 / n;
+    let n = tried_count.max(1) as f64;
+    let rate = caught_count as f64 / n;
     let middle = rate + Z * Z / (2.0 * n);
     let half_width = Z * (rate * (1.0 - rate) / n + Z * Z / (4.0 * n * n)).sqrt();
     let scale = 1.0 + Z * Z / n;
@@ -220,13 +220,13 @@ mod tests {
     #[test]
     fn the_interval_agrees_with_published_wilson_intervals() {
         // Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
-        for (noticed, tried, low, high) in [
+        for (count, sample_size, low, high) in [
             (81, 263, 0.2553, 0.3662),
             (15, 148, 0.0624, 0.1605),
             (0, 20, 0.0000, 0.1611),
             (1, 29, 0.0061, 0.1718),
         ] {
-            let (min, max) = wilson_interval(noticed, tried);
+            let (min, max) = wilson_interval(count, sample_size);
             assert!((min - low).abs() < 1e-4 && (max - high).abs() < 1e-4);
         }
     }

@@ -7,7 +7,7 @@ pub struct Mutant {
     pub file: String,
     /// The description of the mistake.
     pub description: String,
-    /// Part of the names of the tests that run first; `None` if all tests run at once.
+    /// A part of the names of the tests that run before all others; `None` if all tests run at once.
     pub test_filter: Option<String>,
     /// The package whose own tests must notice the mistake, if the code also runs on the host; `None` if the code runs
     /// only in the firmware.
@@ -67,7 +67,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
                 {
                     let line_number = mutant.line;
                     return Err(format!(
-                        "line {line_number}: an entry needs a file, what is wrong, old text"
+                        "line {line_number}: an entry needs a file, a description and an old text"
                     ));
                 }
                 mutants.push(mutant);
@@ -89,7 +89,7 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
                 "wrong" => mutant.description = value.into(),
                 "test" => mutant.test_filter = Some(value.into()),
                 "package" => mutant.package = Some(value.into()),
-                _ => return Err(format!("line {line_number}: what is {key:?}?")),
+                _ => return Err(format!("line {line_number}: unknown key {key:?}")),
             }
         }
     }

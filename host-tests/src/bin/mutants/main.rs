@@ -40,22 +40,21 @@ fn root() -> PathBuf {
 
 /// The outcome of the tests with a mistake in the code.
 enum Outcome {
-    /// A test noticed the mistake. The text names the tests that failed.
+    /// At least one test noticed the mistake. The text names the tests that failed.
     Caught(String),
-    Unnoticed,
+    /// No test noticed the mistake.
+    Missed,
     /// The code with the mistake does not compile.
     DoesNotCompile,
 }
 
 fn main() -> ExitCode {
-    let name_parts: Vec<String> = std::env::args().skip(1).collect();
+    let filters: Vec<String> = std::env::args().skip(1).collect();
     let outcome = match read_number("SAMPLE") {
-        Some(count) => try_generated_mistakes(
-            &name_parts,
-            count as usize,
-            read_number("SEED").unwrap_or(1),
-        ),
-        None => try_listed_mistakes(&name_parts),
+        Some(count) => {
+            try_generated_mistakes(&filters, count as usize, read_number("SEED").unwrap_or(1))
+        }
+        None => try_listed_mistakes(&filters),
     };
     match outcome {
         Ok(0) => ExitCode::SUCCESS,
@@ -68,23 +67,26 @@ fn main() -> ExitCode {
 }
 
 /// Tries `count` generated mistakes. Returns the number of mistakes that no test notices.
-fn try_generated_mistakes(name_parts: &[String], count: usize, seed: u64) -> Result<usize, String> {
+fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result<usize, String> {
     let scratch = ScratchTree::copy()?;
     let mut mutants = Vec::new();
     for file in scratch.files.iter().filter(|file| fresh::is_firmware(file)) {
-        if name_parts.is_empty() || name_parts.iter().any(|part| file.contains(part)) {
+        if filters.is_empty() || filters.iter().any(|part| file.contains(part)) {
             mutants.extend(fresh::mutants_in(file, &read_text(&root().join(file))?));
         }
     }
-    println!("seed {seed}: {count} of {} fresh mistakes", mutants.len());
+    println!(
+        "seed {seed}: {count} of {} generated mistakes",
+        mutants.len()
+    );
     let unchanged = Mutant::unchanged(
         "crates/core/src/lib.rs",
         read_text(&root().join("crates/core/src/lib.rs"))?,
     );
-    if !matches!(scratch.judge(&unchanged)?, Outcome::Unnoticed) {
+    if !matches!(scratch.judge(&unchanged)?, Outcome::Missed) {
         return Err("a test fails or hangs without any mistake".into());
     }
-    // The numbers of noticed and of tried mistakes, first for code that affects a servo or a saved value, then for
+    // The numbers of caught and of tried mistakes, first for code that affects a servo or a saved value, then for
     // code that only produces text.
     let mut tally = [[0; 2]; 2];
     for mutant in fresh::shuffle(mutants, seed) {
@@ -98,39 +100,41 @@ fn try_generated_mistakes(name_parts: &[String], count: usize, seed: u64) -> Res
             Outcome::Caught(test) => {
                 format!("caught by {}", test.split(',').next().unwrap_or(&test))
             }
-            Outcome::Unnoticed => "LIVES".to_owned(),
+            Outcome::Missed => "MISSED".to_owned(),
         };
         println!("{}, {}: {outcome}", mutant.file, mutant.description);
         let counts = &mut tally[usize::from(!fresh::affects_motion(&mutant.file))];
-        counts[0] += usize::from(outcome != "LIVES");
+        counts[0] += usize::from(outcome != "MISSED");
         counts[1] += 1;
     }
-    for ([noticed, tried], code_kind) in tally
+    for ([caught_count, tried_count], code_kind) in tally
         .into_iter()
         .zip(["that move a servo or a saved value", "in text"])
     {
-        let (min, max) = fresh::wilson_interval(noticed, tried);
+        let (min, max) = fresh::wilson_interval(caught_count, tried_count);
         println!(
-            "mistakes {code_kind}: {noticed} of {tried} noticed, {:.1} to {:.1} % (Wilson, 95 %)",
+            "mistakes {code_kind}: {caught_count} of {tried_count} caught, {:.1} to {:.1} % (Wilson, 95 %)",
             100.0 * min,
             100.0 * max
         );
     }
-    Ok(tally.iter().map(|[noticed, tried]| tried - noticed).sum())
+    Ok(tally
+        .iter()
+        .map(|[caught_count, tried_count]| tried_count - caught_count)
+        .sum())
 }
 
 /// Tries the listed mistakes. Returns the number of mistakes that no test notices.
-fn try_listed_mistakes(name_parts: &[String]) -> Result<usize, String> {
+fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
     let list = read_list()?;
     let is_selected = |mutant: &&Mutant| {
         let matches_part =
             |part: &String| mutant.file.contains(part) || mutant.description.contains(part);
-        name_parts.is_empty() || name_parts.iter().any(matches_part)
+        filters.is_empty() || filters.iter().any(matches_part)
     };
     let list: Vec<&Mutant> = list.iter().filter(is_selected).collect();
     let scratch = ScratchTree::copy()?;
-    let is_of_board = |mutant: &&&Mutant| mutant.package.is_none();
-    if list.iter().find(is_of_board).is_some()
+    if list.iter().any(|mutant| mutant.package.is_none())
         && let elf = scratch
             .build_firmware()?
             .ok_or("the firmware does not build")?
@@ -138,18 +142,21 @@ fn try_listed_mistakes(name_parts: &[String]) -> Result<usize, String> {
     {
         return Err("a test fails or hangs without any mistake".into());
     }
-    let mut unnoticed = Vec::new();
+    let mut missed_mutants = Vec::new();
     for mutant in &list {
         let start = Instant::now();
         let outcome = scratch.judge(mutant)?;
         let outcome = match &outcome {
             Outcome::Caught(test) => format!("caught by {test}"),
-            Outcome::Unnoticed => {
-                unnoticed.push(mutant);
-                "LIVES".to_owned()
+            Outcome::Missed => {
+                missed_mutants.push(mutant);
+                "MISSED".to_owned()
             }
             Outcome::DoesNotCompile => {
-                return Err(format!("{}: it does not build", mutant.description));
+                return Err(format!(
+                    "{}: the mistake does not compile",
+                    mutant.description
+                ));
             }
         };
         let seconds = start.elapsed().as_secs();
@@ -159,18 +166,18 @@ fn try_listed_mistakes(name_parts: &[String]) -> Result<usize, String> {
         );
     }
     println!(
-        "{} mistakes, {} noticed, {} live",
+        "{} mistakes, {} caught, {} missed",
         list.len(),
-        list.len() - unnoticed.len(),
-        unnoticed.len()
+        list.len() - missed_mutants.len(),
+        missed_mutants.len()
     );
-    for mutant in &unnoticed {
+    for mutant in &missed_mutants {
         println!(
-            "lives: mutants.txt, line {}: {}",
+            "missed: mutants.txt, line {}: {}",
             mutant.line, mutant.description
         );
     }
-    Ok(unnoticed.len())
+    Ok(missed_mutants.len())
 }
 
 /// Reads the list of mistakes and checks the old texts of all entries, so that a list that is out of date is an error
@@ -224,7 +231,7 @@ impl ScratchTree {
         if fs::read(&path).is_ok_and(|old_bytes| old_bytes == bytes) {
             return Ok(());
         }
-        let parent = path.parent().ok_or("a file is in a folder")?;
+        let parent = path.parent().ok_or("the file has no folder")?;
         let result = fs::create_dir_all(parent).and_then(|()| fs::write(&path, bytes));
         result.map_err(|error| format!("{}: {error}", path.display()))
     }
@@ -271,7 +278,7 @@ impl ScratchTree {
                 Some(_) => {}
             }
         }
-        Ok(Outcome::Unnoticed)
+        Ok(Outcome::Missed)
     }
 
     /// Runs the tests of a package of the copy: first those that should notice the mistake, then all. For a generated
@@ -307,7 +314,7 @@ impl ScratchTree {
         if is_generated {
             self.judge_in_firmware(mutant)
         } else {
-            Ok(Outcome::Unnoticed)
+            Ok(Outcome::Missed)
         }
     }
 

@@ -28,18 +28,15 @@ fn main() -> ExitCode {
 
 fn run(arguments: &[String]) -> Result<(), String> {
     let [folder, seed, count] = arguments else {
-        return Err("the arguments are a folder, a seed, how many robots".into());
+        return Err("the arguments are a folder, a seed and a count".into());
     };
     let parse_number = |text: &String, name: &str| {
         let number = text.parse::<u64>();
-        number.map_err(|_| format!("{name} is a whole number, not {text:?}"))
+        number.map_err(|_| format!("{name} must be a whole number, not {text:?}"))
     };
-    let (seed, count) = (
-        parse_number(seed, "the seed")?,
-        parse_number(count, "COUNT")?,
-    );
+    let (seed, count) = (parse_number(seed, "SEED")?, parse_number(count, "COUNT")?);
     if count == 0 {
-        return Err("COUNT is at least 1".into());
+        return Err("COUNT must be at least 1".into());
     }
     let robots: Vec<(String, Robot)> = (0..count)
         .map(|n| random_robot(&mut Rng::with_seed(seed.wrapping_mul(1_000_003) + 1000 + n)))
@@ -63,26 +60,24 @@ type FeatureTest = fn(&Robot) -> bool;
 /// Checks that each rare feature occurs in one of the robots. The error names the first missing feature.
 fn check_features(robots: &[(String, Robot)]) -> Result<(), String> {
     let rare_features: [(&str, FeatureTest); 5] = [
-        ("a servo that is reversed", |robot| {
+        ("with a reversed servo", |robot| {
             robot.servos().iter().any(|servo| servo.us_per_degree < 0.0)
         }),
-        ("a servo on port C", |robot| {
+        ("with a servo on port C", |robot| {
             robot
                 .servos()
                 .iter()
                 .any(|servo| servo.pin >= FIRST_PORT_C_PIN)
         }),
-        ("a rail that is measured", |robot| {
+        ("with a measured rail", |robot| {
             robot.supplies().rail.is_some()
         }),
-        ("no rail", |robot| robot.supplies().rail.is_none()),
-        ("a gait of its own", |robot| robot.gaits().len() > 1),
+        ("without a rail", |robot| robot.supplies().rail.is_none()),
+        ("with a gait besides stand", |robot| robot.gaits().len() > 1),
     ];
     for (feature, has_feature) in rare_features {
         if !robots.iter().any(|(_, robot)| has_feature(robot)) {
-            return Err(format!(
-                "none of these robots has {feature}; take another seed"
-            ));
+            return Err(format!("there is no robot {feature}; choose another seed"));
         }
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! `make trouble`: plays many random scenarios of trouble on the simulated UNO. The program prints its progress, a
-//! summary by activity, and the steps of the first scenarios that fail.
+//! `make trouble`: runs many random fault-injection scenarios on the simulated UNO. The program prints its progress, the
+//! steps of the first scenarios that fail, and a summary by activity.
 //!
 //! The environment variables SEED and COUNT select the scenarios. With ONLY, the program plays only the scenario with
 //! this number. `make` runs the program in the folder `crates`.
@@ -14,14 +14,14 @@ use lizard_host_tests::{FirmwareBench, patrolling_robot, read_number};
 use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
-/// Number of failing scenarios that are printed in full.
-const PRINTED_FAILURES: usize = 5;
+/// Maximum number of failing scenarios that are printed in full.
+const MAX_PRINTED_FAILURES: usize = 5;
 
 fn main() -> ExitCode {
     let image = FirmwareBench::image_with(patrolling_robot());
     let seed = read_number("SEED").unwrap_or(1);
     if let Some(scenario_number) = read_number("ONLY") {
-        return play_scenario(&image, seed, scenario_number);
+        return replay_verbosely(&image, seed, scenario_number);
     }
     let count = read_number("COUNT").unwrap_or(10_000);
     let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
@@ -43,9 +43,9 @@ fn main() -> ExitCode {
             }
         },
     );
-    for failure in summary.failures.iter().take(PRINTED_FAILURES) {
+    for failure in summary.failures.iter().take(MAX_PRINTED_FAILURES) {
         println!(
-            "\n{failure}  alone: make trouble SEED={seed} ONLY={}",
+            "\n{failure}  to run it alone: make trouble SEED={seed} ONLY={}",
             failure.scenario.number
         );
     }
@@ -61,8 +61,8 @@ fn main() -> ExitCode {
 }
 
 /// Plays one scenario, and prints its steps, its events and the broken rules.
-fn play_scenario(image: &Image, seed: u64, number: u64) -> ExitCode {
-    let scenario = Scenario::of(seed, number, patrolling_robot());
+fn replay_verbosely(image: &Image, seed: u64, number: u64) -> ExitCode {
+    let scenario = Scenario::generate(seed, number, patrolling_robot());
     print!("{scenario}");
     let record = lizard_host_tests::trouble::play(image, patrolling_robot(), &scenario);
     let mut last_pulse_times = [Time::MIN / 2; 4];

@@ -1,4 +1,4 @@
-//! Kinds of trouble in scenarios.
+//! The random kinds of trouble in scenarios.
 
 use super::{Activity, MS, Script, Step, setup};
 
@@ -78,7 +78,7 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Lowers the supply for a long time to a level that allows motion but no writing of the EEPROM, and orders both.
+    /// Lowers the supply for a long time to a level that allows motion but no writing of the EEPROM, and commands both.
     fn add_low_supply(&mut self) {
         let [slow_mv, stop_mv, _] = self.supply_levels_mv();
         let mv = self.rng.u16(stop_mv + 50..slow_mv - 50);
@@ -129,8 +129,8 @@ impl Script<'_> {
         self.steps.push(Step::Supply(5_000));
     }
 
-    /// Adds a supply that falls whenever three servos have pulses. It lasts long enough to detect a robot that starts
-    /// its servos again and again. An order or a reset starts the servos.
+    /// Adds a supply that falls whenever three servos have pulses. This supply lasts long enough to detect a robot that
+    /// starts its servos again and again. A command or a reset starts the servos.
     fn add_weak_supply(&mut self, activity: Activity) {
         self.steps.push(Step::WeakSupply(true));
         match activity {
