@@ -28,7 +28,7 @@ pub fn note_input(path: &Path) -> &Path {
 /// Reads the text of an input.
 ///
 /// # Errors
-/// Fails if the file cannot be read, is not text, or is longer than 256 MiB, for example an endless device.
+/// Fails if the file cannot be read, is not valid UTF-8, or is longer than 256 MiB, for example an endless device.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
@@ -63,7 +63,7 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
 }
 
 /// True for a file that is named robot.toml or has the table `[links]` of a robot, even if the rest of the file is
-/// wrong.
+/// invalid.
 fn is_robot_file(path: &Path) -> bool {
     if !path.is_file() {
         return false;
@@ -139,7 +139,7 @@ fn resolve_links(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
         Ok(_) => Err(io::Error::other(
             "it already exists and is not an ordinary file",
         )),
-        Err(_) if path.is_symlink() => Err(io::Error::other("it is a link that leads nowhere")),
+        Err(_) if path.is_symlink() => Err(io::Error::other("it is a broken symbolic link")),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok((path.to_owned(), None)),
         Err(error) => Err(error),
     }
@@ -212,46 +212,49 @@ mod tests {
 
     fn write_error_text(path: &Path) -> String {
         write(path, b"x")
-            .expect_err("it is not written")
+            .expect_err("the write must be refused")
             .to_string()
     }
 
     #[test]
     fn a_file_is_replaced_and_nothing_else_is_left_in_its_folder() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let path = folder.path().join("new/folder/a");
-        write(&path, b"old and longer").expect("it is written");
-        write(&path, &[0, 0xff]).expect("it is replaced");
-        assert_eq!(fs::read(&path).expect("it is read"), [0, 0xff]);
-        let folder = path.parent().expect("its folder");
-        assert_eq!(folder.read_dir().expect("a folder").count(), 1);
+        write(&path, b"old and longer").expect("a new file is written");
+        write(&path, &[0, 0xff]).expect("an existing file is replaced");
+        assert_eq!(fs::read(&path).expect("the file is readable"), [0, 0xff]);
+        let folder = path.parent().expect("the file is in a folder");
+        assert_eq!(
+            folder.read_dir().expect("the folder is readable").count(),
+            1
+        );
     }
 
     #[test]
     fn an_input_and_a_robot_are_not_replaced_under_any_name() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let [input, other_name, robot, unnamed_robot] =
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
+        let [input, other_name, robot, renamed_robot] =
             ["a.jsonl", "b", "robot.toml", "mine"].map(|name| folder.path().join(name));
-        fs::write(&input, "an input").expect("it is written");
-        fs::write(&robot, "broken").expect("it is written");
-        fs::write(&unnamed_robot, "# mine\n [links]\nl0 = x\n").expect("it is written");
-        fs::hard_link(&input, &other_name).expect("another name of it");
+        fs::write(&input, "an input").expect("the file is written");
+        fs::write(&robot, "broken").expect("the file is written");
+        fs::write(&renamed_robot, "# mine\n [links]\nl0 = x\n").expect("the file is written");
+        fs::hard_link(&input, &other_name).expect("a hard link is created");
         let _ = note_input(&folder.path().join("../").join(&input));
         for (path, reason) in [
             (&input, "but this command reads it; name another file"),
             (&other_name, "but this command reads it; name another file"),
             (&robot, "but it describes a robot; name another file"),
             (
-                &unnamed_robot,
+                &renamed_robot,
                 "but it describes a robot; name another file",
             ),
         ] {
-            let old_bytes = fs::read(path).expect("it is there");
+            let old_bytes = fs::read(path).expect("the file is readable");
             let message = write_error_text(path);
             assert!(message.contains(reason), "{message}");
-            assert_eq!(fs::read(path).expect("it is there"), old_bytes);
+            assert_eq!(fs::read(path).expect("the file is readable"), old_bytes);
         }
-        write(&folder.path().join("c"), b"x").expect("a file like any other");
+        write(&folder.path().join("c"), b"x").expect("any other file is written");
     }
 
     #[test]
@@ -264,9 +267,9 @@ mod tests {
 
     #[test]
     fn a_folder_is_not_replaced() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let inner_folder = folder.path().join("inner");
-        fs::create_dir(&inner_folder).expect("a folder in it");
+        fs::create_dir(&inner_folder).expect("a folder is created");
         assert!(
             write_error_text(&inner_folder)
                 .ends_with("it already exists and is not an ordinary file")
@@ -276,34 +279,37 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_link_stays_and_the_file_at_its_end_is_replaced_with_its_permissions() {
+    fn writing_through_a_link_keeps_the_link_and_the_permissions_of_its_target() {
         use std::os::unix::fs::{PermissionsExt, symlink};
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let [file, link, broken_link] =
             ["file", "link", "astray"].map(|name| folder.path().join(name));
-        fs::write(&file, "old").expect("it is written");
-        fs::set_permissions(&file, Permissions::from_mode(0o640)).expect("it is ours");
-        symlink("file", &link).expect("a link");
-        write(&link, b"new").expect("it is written");
+        fs::write(&file, "old").expect("the file is written");
+        fs::set_permissions(&file, Permissions::from_mode(0o640))
+            .expect("the owner may set permissions");
+        symlink("file", &link).expect("a link is created");
+        write(&link, b"new").expect("the file is written");
         assert!(link.is_symlink());
-        assert_eq!(fs::read(&file).expect("it is read"), b"new");
-        let mode = file.metadata().expect("it is there").permissions().mode();
+        assert_eq!(fs::read(&file).expect("the file is readable"), b"new");
+        let mode = file
+            .metadata()
+            .expect("the file exists")
+            .permissions()
+            .mode();
         assert_eq!(mode & 0o777, 0o640);
-        symlink("nothing", &broken_link).expect("a link");
-        assert!(
-            write_error_text(&broken_link).ends_with("astray: it is a link that leads nowhere")
-        );
+        symlink("nothing", &broken_link).expect("a link is created");
+        assert!(write_error_text(&broken_link).ends_with("astray: it is a broken symbolic link"));
         assert!(broken_link.is_symlink());
     }
 
     #[test]
     #[cfg(unix)]
     fn a_stream_gets_the_bytes_and_stays() {
-        let folder = tempfile::tempdir().expect("a folder");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         // The test uses a link, so that a bug replaces the link and not the device.
         let device = folder.path().join("device");
-        std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
-        write(&device, b"<svg/>").expect("it takes everything");
+        std::os::unix::fs::symlink("/dev/null", &device).expect("a link is created");
+        write(&device, b"<svg/>").expect("/dev/null accepts all bytes");
         assert!(device.is_symlink());
     }
 
@@ -321,7 +327,8 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn a_full_device_is_named() {
-        let message = write(Path::new("/dev/full"), b"<svg/>").expect_err("it is full");
+        let message = write(Path::new("/dev/full"), b"<svg/>")
+            .expect_err("the full device must refuse the write");
         let message = message.to_string();
         assert!(
             message.starts_with("cannot write /dev/full: No space left"),

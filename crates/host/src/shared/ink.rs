@@ -27,7 +27,7 @@ pub const PANEL_COLOUR: &str = "#f7f7f7";
 /// The fonts, in order of preference.
 const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
-/// The part of a text that is at the given point.
+/// The part of a text that lies at its given point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
     /// The text begins at the point.
@@ -106,12 +106,12 @@ pub fn cross(centre: (f64, f64), arm_length: f64, colour: &str, width: f64) -> G
 }
 
 /// A straight line.
-pub fn line(from: (f64, f64), to: (f64, f64), colour: &str, width: f64) -> Line {
+pub fn line(start: (f64, f64), end: (f64, f64), colour: &str, width: f64) -> Line {
     Line::new()
-        .set("x1", round_hundredths(from.0))
-        .set("y1", round_hundredths(from.1))
-        .set("x2", round_hundredths(to.0))
-        .set("y2", round_hundredths(to.1))
+        .set("x1", round_hundredths(start.0))
+        .set("y1", round_hundredths(start.1))
+        .set("x2", round_hundredths(end.0))
+        .set("y2", round_hundredths(end.1))
         .set("stroke", colour)
         .set("stroke-width", width)
         .set("stroke-linecap", "round")

@@ -7,7 +7,7 @@ pub fn round_decimals(value: f64, decimals: i32) -> f64 {
     (value * scale).round() / scale + 0.0
 }
 
-/// Formats a number with blanks between groups of three digits.
+/// Formats a number with spaces between groups of three digits.
 pub fn format_grouped(value: f64, decimals: usize) -> String {
     let ungrouped = format!("{value:.decimals$}");
     let (integer, fraction) = ungrouped.split_at(ungrouped.find('.').unwrap_or(ungrouped.len()));
@@ -26,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn groups_of_three_digits_are_separated_by_blanks() {
+    fn groups_of_three_digits_are_separated_by_spaces() {
         for (value, decimals, text) in [
             (0.0, 0, "0"),
             (999.4, 0, "999"),

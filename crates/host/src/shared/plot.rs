@@ -26,9 +26,9 @@ pub const IMPOSSIBLE_COLOUR: &str = "#d4d0cb";
 /// A rectangle on the page with its own coordinate system.
 #[derive(Clone, Copy)]
 pub struct Plot {
-    /// Upper left corner on the page.
+    /// Upper left corner on the page, px.
     pub corner: (f64, f64),
-    /// Width and height on the page.
+    /// Width and height on the page, px.
     pub size: (f64, f64),
     /// Range from left to right.
     pub x_range: (f64, f64),
@@ -36,9 +36,9 @@ pub struct Plot {
     pub y_range: (f64, f64),
 }
 
-/// Ticks and name of an axis.
+/// The ticks and the name of an axis.
 pub struct Axis<'a> {
-    /// Distance between ticks.
+    /// Distance between ticks, in the axis's unit.
     pub tick_step: f64,
     /// Name and unit.
     pub name: &'a str,
@@ -52,7 +52,7 @@ impl<'a> Axis<'a> {
 }
 
 impl Plot {
-    /// The position on the page of a point in the plot's coordinates.
+    /// Converts a point from the plot's coordinates to its position on the page, px.
     pub fn page_point(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x_range.0) / (self.x_range.1 - self.x_range.0),
@@ -60,7 +60,7 @@ impl Plot {
         )
     }
 
-    /// Page units per unit of x.
+    /// Pixels per unit of x.
     pub fn scale(&self) -> f64 {
         self.size.0 / (self.x_range.1 - self.x_range.0)
     }
@@ -197,10 +197,10 @@ fn ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
     (first..=last).map(move |i| i as f64 * step)
 }
 
-/// A tick's number, with as many digits as the step needs.
+/// Formats a tick's value with as many decimals as the step needs.
 fn format_tick(value: f64, step: f64) -> String {
     let decimals = (0..4)
-        .find(|&digits| (step * 10f64.powi(digits)).fract().abs() < 1e-9)
+        .find(|&decimals| (step * 10f64.powi(decimals)).fract().abs() < 1e-9)
         .unwrap_or(4);
     format!("{:.1$}", value + 0.0, decimals as usize)
 }

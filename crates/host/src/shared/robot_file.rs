@@ -22,7 +22,7 @@ const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
     ("unequal", include_str!("../../../../robots/unequal.toml")),
 ];
 
-/// The names of the robots inside the program.
+/// The names of the built-in robots.
 pub(crate) fn built_in_names() -> [&'static str; BUILT_IN_ROBOTS.len()] {
     BUILT_IN_ROBOTS.map(|(name, _)| name)
 }
@@ -61,7 +61,7 @@ impl RobotFile {
     /// The text of the robot file.
     ///
     /// # Errors
-    /// Fails if the file is missing or is not text, or if the current folder was removed.
+    /// Fails if the file is missing or is not valid UTF-8, or if the current folder was removed.
     pub(crate) fn text(&self) -> Result<String, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.clone());
@@ -81,7 +81,7 @@ impl RobotFile {
     /// Reads and checks the robot.
     ///
     /// # Errors
-    /// Fails if the file is missing or wrong.
+    /// Fails if the file is missing or invalid.
     pub fn load(&self) -> Result<Robot, Failure> {
         if let Some(text) = &self.text {
             return Ok(Robot::parse(text)?);
@@ -147,20 +147,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_file_of_robots_is_in_the_program_by_its_name() {
+    fn every_file_of_robots_is_built_in_under_its_name() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
-        let files = std::fs::read_dir(folder).expect("robots/");
-        let mut names: Vec<_> = files
-            .map(|file| file.expect("a file").path())
-            .map(|path| path.file_stem().expect("a name").to_owned())
+        let entries = std::fs::read_dir(folder).expect("robots/ is readable");
+        let mut names: Vec<_> = entries
+            .map(|entry| entry.expect("robots/ is readable").path())
+            .map(|path| path.file_stem().expect("the file has a name").to_owned())
             .collect();
         names.sort();
         assert_eq!(names, BUILT_IN_ROBOTS.map(|(name, _)| name));
         for (name, text) in BUILT_IN_ROBOTS {
             let file = RobotFile::from_path(Some(name.into()));
             assert!(file.load().is_ok(), "{name}");
-            assert_eq!(file.text().expect("a text"), text);
-            assert_eq!(file.name().expect("a name"), format!("the robot {name}"));
+            assert_eq!(file.text().expect("a built-in robot has a text"), text);
+            assert_eq!(
+                file.name().expect("a built-in robot has a name"),
+                format!("the robot {name}")
+            );
         }
         let result = RobotFile::from_path(Some("papre".into())).load();
         assert!(result.is_err_and(|error| error.to_string().contains("papre")));

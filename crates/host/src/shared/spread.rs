@@ -63,7 +63,7 @@ impl From<Part> for String {
 }
 
 impl Part {
-    /// True if a piece belongs to this part. Neighbouring pieces belong to different parts, because slow pieces are
+    /// True if the piece with this index belongs to this part. Neighbouring pieces belong to different parts, because slow pieces are
     /// often neighbours.
     fn has_piece(self, piece: usize) -> bool {
         piece % self.part_count as usize == self.number as usize - 1

@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_most_similar_name_is_suggested_and_no_dissimilar_one() {
+    fn the_most_similar_name_is_suggested_unless_all_are_dissimilar() {
         let names = ["stand", "walk", "arc-left", "arc-right"];
         assert_eq!(suggestion_text("wlak", names), "; did you mean `walk`?");
         assert_eq!(

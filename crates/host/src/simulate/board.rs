@@ -1,5 +1,5 @@
-//! A simulated UNO, used as if through a serial cable and an oscilloscope: power it on, send
-//! lines, read answers, measure the servos' pulses.
+//! A simulated UNO, used as if through a serial cable and an oscilloscope: power it on, send lines, read answers,
+//! measure the servos' pulses.
 
 use std::path::Path;
 
@@ -14,15 +14,14 @@ use crate::simulate::sim::frame::{
 use crate::simulate::sim::lines::{Line, LineReader};
 use crate::simulate::sim::supplies;
 
-/// The longest wait for an answer after its command has been sent, ms. The
-/// firmware answers much sooner.
+/// The longest wait for an answer after its command has been sent, ms. The firmware answers much sooner.
 const ANSWER_TIMEOUT_MS: u64 = 200;
 /// The longest wait for the banner after power-on, ms.
 pub(crate) const BANNER_TIMEOUT_MS: u64 = 500;
 /// Cycles of the UNO per byte on the serial line, rounded up.
 const CYCLES_PER_BYTE: u64 = 1400;
 
-/// The reason why a simulated board did not do what it was asked for.
+/// The reason why an operation on a simulated board failed.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// The firmware cannot be loaded.
@@ -78,7 +77,7 @@ impl From<BoardError> for Failure {
 
 /// A simulated UNO with a firmware in its flash.
 pub struct SimulatedBoard {
-    /// The UNO. Its transmitted bytes must be taken only by [`SimulatedBoard::lines`] and [`SimulatedBoard::bytes`].
+    /// The UNO. Its transmitted bytes must be read only through [`SimulatedBoard::lines`] and [`SimulatedBoard::bytes`].
     pub uno: Uno,
     /// The pins of the servos A1 to A4.
     pins: [Pin; 4],
@@ -141,8 +140,8 @@ impl SimulatedBoard {
         self.pins
     }
 
-    /// Sends a line and returns its answer, the first line without `#`. The
-    /// `#` lines before it are in [`SimulatedBoard::lines`].
+    /// Sends a line and returns its answer, the first line without `#`. The `#` lines before the answer are in
+    /// [`SimulatedBoard::lines`].
     ///
     /// # Errors
     /// Fails if there is no answer within 200 ms after the line has been sent.
@@ -174,8 +173,8 @@ impl SimulatedBoard {
         self.uno.send(b"\n");
     }
 
-    /// Returns the next line without its line end; `None` if it does not come within `ms` after
-    /// the last byte still to be sent, or if the firmware stops.
+    /// Returns the next line without its line end; `None` if no line arrives within `ms` after the last byte still to be
+    /// sent, or if the firmware stops.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
         let cycles_to_send = self.uno.bytes_unsent() as u64 * CYCLES_PER_BYTE;
         let end_cycle = self.uno.cycle() + cycles_to_send + ms * CYCLES_PER_MS;
@@ -195,18 +194,18 @@ impl SimulatedBoard {
 
     /// Every line that the firmware has sent since power-on.
     pub fn lines(&mut self) -> &[Line] {
-        self.collect();
+        self.collect_output();
         &self.lines
     }
 
     /// Every byte that the firmware has sent since power-on.
     pub fn bytes(&mut self) -> &[SerialByte] {
-        self.collect();
+        self.collect_output();
         &self.bytes
     }
 
-    /// Appends what the UNO has transmitted since the last call to `bytes` and `lines`.
-    fn collect(&mut self) {
+    /// Appends the bytes that the UNO has transmitted since the previous call to `bytes` and `lines`.
+    fn collect_output(&mut self) {
         let bytes = self.uno.take_transmitted();
         self.lines.extend(self.reader.read(&bytes));
         self.bytes.extend(bytes);
@@ -250,8 +249,8 @@ impl SimulatedBoard {
         }
     }
 
-    /// Runs the board for `ms` and times every call of a firmware function. The function is given
-    /// by its path, such as `Controller::compute_frame`.
+    /// Runs the board for `ms` and times every call of a firmware function. The function is given by its path, such as
+    /// `Controller::compute_frame`.
     ///
     /// # Errors
     /// Fails if the ELF has no such function, or more than one.
@@ -277,13 +276,12 @@ impl SimulatedBoard {
     /// Fails if the recorded edges contain no pulse of A1.
     pub fn first_pulse_cycle(&self) -> Result<u64, BoardError> {
         let pulses = self.uno.pulses(self.pins[0]);
-        let first = pulses.first().map(|pulse| pulse.start);
-        first.ok_or(BoardError::NoPulse)
+        let first_start = pulses.first().map(|pulse| pulse.start);
+        first_start.ok_or(BoardError::NoPulse)
     }
 
-    /// Runs `count` whole frames, starting with the next, and returns their
-    /// pulses. Frames are aligned to A1's latest pulse or, if there was none,
-    /// to the present cycle. Edges recorded before these frames are dropped.
+    /// Runs `count` complete frames, starting with the next one, and returns their pulses. Frames are aligned to A1's
+    /// latest pulse or, without one, to the current cycle. Edges recorded before these frames are dropped.
     ///
     /// # Errors
     /// See [`SimulatedBoard::run_ms`].

@@ -41,8 +41,8 @@ pub fn record_course(
     })
 }
 
-/// Each frame's servo targets, read from the pulses, as sweeps from neutral in degrees. A servo
-/// without a pulse keeps its previous target.
+/// Each frame's servo targets, read from the pulses, as sweeps from neutral in degrees. A servo without a pulse keeps
+/// its previous target.
 fn target_sweeps(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
     let mut targets = [0.0; 4];
     let frames = log.widths.iter().map(|widths| {

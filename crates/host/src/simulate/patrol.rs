@@ -1,5 +1,4 @@
-//! Adds a routine that uses a button, a nose contact and up to nine gaits, for measurements and random
-//! tests.
+//! Adds a routine that uses a button, a nose contact and up to nine gaits, for measurements and random tests.
 
 use lizard_robot::{Error, Robot, command_of};
 
@@ -14,10 +13,9 @@ const MAX_OTHER_GAITS: usize = 8;
 /// The Arduino pins that are tried for a missing input, in this order. A1 to A4 are analogue pins here, not servos.
 const CANDIDATE_PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
-/// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine
-/// waits for the button, walks with the first gait until the nose touches something, goes through
-/// up to eight other gaits, and ends with `last_steps`. A robot that has a routine of this name
-/// is returned unchanged.
+/// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine waits for the button,
+/// walks with the first gait until the nose touches something, continues with up to eight other gaits, and ends with
+/// `last_steps`. A robot that already has a routine of this name is returned unchanged.
 ///
 /// # Errors
 /// Fails if the text is not a valid robot file, or has no room for the inputs or the routine.

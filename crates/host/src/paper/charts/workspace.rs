@@ -111,7 +111,7 @@ pub fn draw_conditioning(robot: &Robot) -> String {
     });
     let performance = Performance::of(&five_bar, 64);
     if let (Some(mic), Some(lci_stats)) = (workspace.inscribed_circle(), performance.lci) {
-        let claimed_circle = Circle {
+        let lci_circle = Circle {
             radius: lci_stats.radius_above,
             ..mic
         };
@@ -120,20 +120,14 @@ pub fn draw_conditioning(robot: &Robot) -> String {
             .add(draw_ring(&plot, mic.centre, mic.radius, CIRCLE_COLOUR, 3.0))
             .add(draw_ring(
                 &plot,
-                claimed_circle.centre,
-                claimed_circle.radius,
+                lci_circle.centre,
+                lci_circle.radius,
                 "white",
                 5.0,
             ))
             .add(
-                draw_ring(
-                    &plot,
-                    claimed_circle.centre,
-                    claimed_circle.radius,
-                    DARK,
-                    2.0,
-                )
-                .set("stroke-dasharray", "7 4"),
+                draw_ring(&plot, lci_circle.centre, lci_circle.radius, DARK, 2.0)
+                    .set("stroke-dasharray", "7 4"),
             );
         let legend_x = 850.0;
         group = draw_legend_entry(

@@ -11,10 +11,10 @@ use super::CODE_HEX;
 use crate::shared::files::note_input;
 use crate::{Failure, RobotFile};
 
-/// An image to run, and its source.
+/// An image to run, and the name of its source.
 #[derive(Debug, Clone)]
 pub struct Firmware {
-    /// The file's path, or a note that it is this program's own image.
+    /// The file's path, or a description of this program's own image.
     pub name: String,
     /// The code followed by the robot.
     pub image: Image,
@@ -119,8 +119,8 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
 /// # Panics
 /// Never: a test parses this code, and the image has room for a robot's section.
 pub fn built_in_image(robot: &Robot) -> Image {
-    let mut image = Image::parse_hex(CODE_HEX).expect("a test reads it");
-    replace_robot(&mut image, robot).expect("a robot's section has room");
+    let mut image = Image::parse_hex(CODE_HEX).expect("the built-in code is valid Intel HEX");
+    replace_robot(&mut image, robot).expect("the image has room for a section");
     image
 }
 
@@ -130,7 +130,7 @@ pub fn built_in_image(robot: &Robot) -> Image {
 /// # Panics
 /// Never: the new section is as long as the old section.
 pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
-    replace_robot(&mut image, &robot.without_contacts()).expect("a robot's section has room");
+    replace_robot(&mut image, &robot.without_contacts()).expect("the image has room for a section");
     image
 }
 

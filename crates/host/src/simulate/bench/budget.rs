@@ -66,7 +66,7 @@ const MAX_WALL_S: f64 = 60.0;
 /// Simulated time of the long run, s: ten minutes.
 const LONG_RUN_S: f64 = 600.0;
 
-/// The table of all figures.
+/// Lists all figures with their budgets.
 pub fn rows(figures: &Figures) -> Vec<Row> {
     use Bound::{AtLeast, AtMost};
     let row = |what, unit, measured, budget, servo_library| Row {

@@ -11,8 +11,8 @@ use crate::simulate::sim::frame::{FRAME_CYCLES, first_cycle, group_frames};
 /// The errors of the pulses' widths and periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exactness {
-    /// Smallest and largest difference of a measured width minus its command, cycles; `None` if the commands are not
-    /// known because the firmware was built from another source.
+    /// Smallest and largest value of a measured width minus its command, cycles; `None` if the commands are not known,
+    /// because the firmware was built from another source.
     pub width_error_range: Option<[i64; 2]>,
     /// Largest deviation of a servo's pulse period from 20 ms, cycles.
     pub max_period_error: u64,
@@ -23,8 +23,8 @@ pub struct Exactness {
 }
 
 impl Exactness {
-    /// Measures all pulses that the firmware of `robot` has sent so far. The commands that determine the pulses must
-    /// be within the first `command_bytes` bytes that the board received.
+    /// Measures all pulses that the firmware of `robot` has sent so far. The first `command_bytes` bytes that the board
+    /// received must contain all commands that determine the pulses.
     ///
     /// # Errors
     /// Fails if the board has sent no pulse.
@@ -38,14 +38,14 @@ impl Exactness {
         let pins = board.pins();
         let mut edges = board.uno.edges();
         let frame_count = (board.uno.cycle() - first_cycle(first_pulse_cycle)) / FRAME_CYCLES;
-        let frames_sent = group_frames(&edges, pins, first_pulse_cycle, frame_count);
+        let sent_frames = group_frames(&edges, pins, first_pulse_cycle, frame_count);
         let received = &board.uno.received_by_uno()[..command_bytes];
-        let expected_run = core_run::play(*robot, received, first_pulse_cycle, frames_sent.len());
+        let expected_run = core_run::play(*robot, received, first_pulse_cycle, sent_frames.len());
         let are_commands_known = banner.as_deref() == expected_run.text.lines().next();
 
         let mut error_range = [i64::MAX, i64::MIN];
         let (mut max_period_error, mut width_step) = (0, 0);
-        for (frame, commanded_widths) in frames_sent.iter().zip(&expected_run.widths) {
+        for (frame, commanded_widths) in sent_frames.iter().zip(&expected_run.widths) {
             for (width, commanded_width) in frame.widths.iter().zip(commanded_widths) {
                 let difference = width.unwrap_or(0) as i64 - i64::from(*commanded_width);
                 error_range = [
@@ -54,7 +54,7 @@ impl Exactness {
                 ];
             }
         }
-        for pair in frames_sent.windows(2) {
+        for pair in sent_frames.windows(2) {
             for servo in 0..4 {
                 if let (Some(current), Some(next)) = (pair[0].starts[servo], pair[1].starts[servo])
                 {

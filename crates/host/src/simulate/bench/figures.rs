@@ -23,9 +23,9 @@ use crate::simulate::sim::tour;
 pub struct Figures {
     /// The gait that was measured: the robot's first moving gait.
     pub gait: Option<String>,
-    /// Bytes of flash of the code, with its tables and initial values.
+    /// Flash bytes of the code, including its tables and initial values.
     pub code_bytes: u32,
-    /// Bytes of the robot's section.
+    /// Flash bytes of the robot's section.
     pub section_bytes: u32,
     /// True if the section has maps of certified cells; otherwise the guard measures every pose.
     pub has_maps: bool,
@@ -151,7 +151,8 @@ impl Figures {
         };
         report_progress("the stack's depth");
         let image = firmware::read_image(elf)?;
-        let stack = StackDepth::of(&image).map_err(|e| Failure::Impossible(e.to_string()))?;
+        let stack =
+            StackDepth::of(&image).map_err(|error| Failure::Impossible(error.to_string()))?;
         report_progress("pulses on an idle line");
         let mut idle_run = GaitRun::of(boot_board()?, gait, 20_000)?;
         let command_bytes = idle_run.board.uno.received_by_uno().len();
@@ -295,8 +296,8 @@ impl GaitRun {
     }
 }
 
-/// Runs a gait for twenty seconds on a serial line that is saturated in both directions. The lines that saturate it are
-/// `status`, which moves nothing. Also returns the number of bytes that the board had received before these lines.
+/// Runs a gait for twenty seconds on a serial line that is saturated in both directions by `status`, which moves
+/// nothing. Also returns the number of bytes that the board had received before the line was saturated.
 fn run_gait_on_saturated_line(
     mut board: SimulatedBoard,
     gait: &str,
@@ -341,7 +342,7 @@ fn pose_command(robot: &Robot, offsets: [f64; 4]) -> String {
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
-/// Sends every kind of command while `watch` reports every frame. Each is sent after the previous one was answered.
+/// Sends every kind of command, each after the answer to the previous one, while `watch` reports every frame.
 fn run_all_commands(
     mut board: SimulatedBoard,
     robot: &Robot,
@@ -381,8 +382,8 @@ fn time_calls_per_command(
     Ok(calls)
 }
 
-/// Lines that take long to execute. Some have an unknown name that begins like a gait's name: of all gaits, the one
-/// whose name has the most leading characters in common with the others.
+/// Lines that take long to execute. Some have an unknown name that begins with a gait's name: that of the gait whose
+/// name has the most leading characters in common with the others.
 fn slow_lines(robot: &Robot) -> Vec<String> {
     let gait_names = || robot.gaits().iter().map(CheckedGait::command);
     let total_shared_length = |line: &String| -> usize {
@@ -393,18 +394,18 @@ fn slow_lines(robot: &Robot) -> Vec<String> {
         };
         gait_names().map(shared_length).sum()
     };
-    let nearest_name = gait_names()
+    let most_similar_name = gait_names()
         .max_by_key(total_shared_length)
         .unwrap_or_default();
     let mut lines = SLOW_LINES.map(str::to_owned).to_vec();
-    lines.push(format!("boot {nearest_name}"));
+    lines.push(format!("boot {most_similar_name}"));
     lines.push("cal".into());
-    lines.push(format!("{nearest_name}x"));
-    lines.push(format!("boot {nearest_name}x"));
+    lines.push(format!("{most_similar_name}x"));
+    lines.push(format!("boot {most_similar_name}x"));
     lines
 }
 
-/// The cycles of a function's longest call while the lines are executed during a gait. Refused lines count, too,
+/// The cycles of a function's longest call while the lines are executed during a gait. Refused lines count as well,
 /// because they take as long.
 fn longest_call(
     mut board: SimulatedBoard,

@@ -65,7 +65,7 @@ pub struct Safety {
     pub least: Option<SmallestMargin>,
     /// Smallest and largest slider travel, mm; infinite if the run has no feasible pose.
     pub stroke: [f64; 2],
-    /// Number of frames whose pose is infeasible or breaks a limit of robot.toml.
+    /// Number of frames whose pose is infeasible or violates a limit of robot.toml.
     pub violations: usize,
     /// The reason for the first violation; `None` without violations.
     pub first_violation: Option<String>,
@@ -80,8 +80,8 @@ pub struct CommandPath {
     pub from: f64,
     /// End of the command, seconds since power-on.
     pub to: f64,
-    /// Distance forward from the start of the path, mm; `None` if the contact model does not
-    /// determine it, because two feet balance the two others (a tie).
+    /// Distance forward from the start of the path, mm; `None` if the contact model does not determine it, because two
+    /// feet balance the other two (a tie).
     pub forward: Option<f64>,
     /// Distance to the left from the start of the path, mm; `None` if a tie leaves it undetermined.
     pub left: Option<f64>,
@@ -150,20 +150,20 @@ impl Serialize for Run<'_> {
     }
 }
 
-/// Makes the report of each servo. `commanded_widths` are the widths in cycles that the firmware's
-/// core requested in each frame, 0 for no pulse.
+/// Computes the report of each servo. `commanded_widths` are the widths in cycles that the firmware's core requested in
+/// each frame, 0 for no pulse.
 pub fn servo_reports(run: Run<'_>, commanded_widths: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
     let frames = &run.log.widths;
     let mut max_turns_per_frame = [0.0f64; 4];
-    let mut angles_before = None;
+    let mut previous_angles = None;
     for angles in run.servo_frames().map(|servo_frame| servo_frame.angles) {
-        if let (Some(angles_before), Some(angles)) = (angles_before, angles) {
-            let angles_before: [f64; 4] = angles_before;
+        if let (Some(previous_angles), Some(angles)) = (previous_angles, angles) {
+            let previous_angles: [f64; 4] = previous_angles;
             max_turns_per_frame = std::array::from_fn(|i| {
-                max_turns_per_frame[i].max((angles[i] - angles_before[i]).abs())
+                max_turns_per_frame[i].max((angles[i] - previous_angles[i]).abs())
             });
         }
-        angles_before = angles;
+        previous_angles = angles;
     }
     let report_of = |i: usize| {
         let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
@@ -203,7 +203,7 @@ pub fn check_safety(run: Run<'_>) -> Safety {
             continue;
         };
         let violation = match latest_pose.take() {
-            Some((angles_before, violation)) if angles_before == angles => violation,
+            Some((previous_angles, violation)) if previous_angles == angles => violation,
             _ => safety.add_pose(run.robot, angles, servo_frame.seconds),
         };
         if let Some(reason) = &violation {
@@ -216,7 +216,7 @@ pub fn check_safety(run: Run<'_>) -> Safety {
 }
 
 impl Safety {
-    /// Adds a pose; returns the reason if it is infeasible or breaks a limit.
+    /// Adds a pose; returns the reason if the pose is infeasible or violates a limit.
     fn add_pose(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
         let solution = match robot.lizard().solve(&angles.into()) {
             Err(infeasible) => return Some(infeasible.to_string()),
@@ -238,9 +238,9 @@ impl Safety {
     }
 }
 
-/// The path during each command by the contact model; the last entry is the path of the complete
-/// run. Legs count as rigid here, so that each pair of frames that repeats is computed once; in
-/// `lizard twin` legs lag. Feet are never lifted: see [`lizard_robot::Ground`].
+/// Computes the path during each command by the contact model; the last entry is the path of the complete run. Legs
+/// count as rigid here, so that a pair of frames that repeats is computed only once; in `lizard twin` legs lag. Feet
+/// are never lifted: see [`lizard_robot::Ground`].
 pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut travel_cache = TravelCache {
         run,
@@ -259,9 +259,8 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
         }
         let are_determined = *determined_by_command
             .entry(span.command.as_str())
-            .or_insert_with(|| determined_parts(run.robot, &span.command));
-        are_all_determined =
-            std::array::from_fn(|part| are_all_determined[part] && are_determined[part]);
+            .or_insert_with(|| determined_components(run.robot, &span.command));
+        are_all_determined = std::array::from_fn(|i| are_all_determined[i] && are_determined[i]);
         paths.push(CommandPath::new(
             &span.command,
             [span.from, span.to],
@@ -279,12 +278,12 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     paths
 }
 
-/// True for each part of a command's path (forward, left, turn) that the contact model determines.
-/// It does not determine a part of a gait's path that depends on a tie.
-fn determined_parts(robot: &Robot, command: &str) -> [bool; 3] {
+/// True for each component of a command's path (forward, left, turn) that the contact model determines. A component
+/// of a gait's path that depends on a tie is not determined.
+fn determined_components(robot: &Robot, command: &str) -> [bool; 3] {
     robot.gait_of_line(command).map_or([true; 3], |gait| {
         let prediction = robot.predict(gait);
-        [prediction.forward, prediction.left, prediction.turn].map(|part| part.is_some())
+        [prediction.forward, prediction.left, prediction.turn].map(|component| component.is_some())
     })
 }
 
@@ -312,8 +311,8 @@ const NO_TRAVEL: Travel = Travel {
 /// Pulse widths of a frame and of the next frame, cycles.
 type WidthPair = [[u16; 4]; 2];
 
-/// The movements of the robot from one frame to the next, computed when they are needed and kept,
-/// because a gait repeats its frames.
+/// The movements of the robot from one frame to the next, computed on demand and cached, because a gait repeats its
+/// frames.
 struct TravelCache<'a> {
     run: Run<'a>,
     travels: HashMap<WidthPair, Travel>,

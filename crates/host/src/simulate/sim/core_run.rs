@@ -1,13 +1,12 @@
 //! Runs the firmware's core on this machine, for comparison with the simulated chip.
 //!
-//! The core is plain integer Rust, so with the same bytes received before the same ticks it
-//! must compute exactly the same widths here as on the AVR. The pulses at the pins are compared
-//! with these widths: a difference is a fault of the compiler, of the board's code or of the code
-//! that makes the pulses.
+//! The core is plain integer Rust, so with the same bytes received before the same ticks it must compute exactly the
+//! same widths here as on the AVR. The pulses at the pins are compared with these widths: a difference is a bug in the
+//! compiler, in the board's code or in the code that makes the pulses.
 //!
-//! The time at which main takes a received byte has to be reconstructed. Main takes a byte when it is complete at the
-//! UNO and the transmit buffer has room for the longest answer; the free room follows from the length of the text
-//! written so far. Main also waits while it writes the EEPROM; these waits are not reconstructed, and take no time
+//! The time at which main reads a received byte has to be reconstructed. Main reads a byte when the UNO has received it
+//! completely and the transmit buffer has room for the longest answer; the free room follows from the length of the
+//! text written so far. Main also waits while it writes the EEPROM; these waits are not reconstructed, and take no time
 //! here.
 
 use lizard_core::console::MAX_OUTPUT_LINE_BYTES;
@@ -21,8 +20,7 @@ use super::supplies;
 
 /// Cycles that the UNO takes to send a byte: 10 bits of 17 * 8 cycles.
 const CYCLES_PER_BYTE: u64 = 1360;
-/// Bytes that main can write before it has to wait: 255 in the ring buffer and two in the
-/// transmitter.
+/// Bytes that main can write before it has to wait: 255 in the ring buffer and two in the transmitter.
 const SERIAL_CAPACITY_BYTES: u64 = 255 + 2;
 /// Largest number of queued bytes that leaves room for the longest answer.
 const MAX_QUEUED_BYTES: u64 = SERIAL_CAPACITY_BYTES - MAX_OUTPUT_LINE_BYTES as u64;
@@ -117,14 +115,14 @@ pub fn play_with_contacts(
     frame_count: usize,
 ) -> CoreOutput {
     let mut contacts = contacts.iter().peekable();
-    let silent_frames = frames_before_waking(robot);
+    let silent_count = frames_before_waking(robot);
     let mut run = CoreRun::new(robot);
     let mut received = received.iter().peekable();
     let mut widths = Vec::with_capacity(frame_count);
-    for frame_index in 0..silent_frames + frame_count {
+    for frame_index in 0..silent_count + frame_count {
         let start = first_pulse_cycle + frame_index as u64 * FRAME_CYCLES;
         // A control tick is one slot before the first pulse of the frame that it begins.
-        let tick_cycle = start.saturating_sub(silent_frames as u64 * FRAME_CYCLES + SLOT_CYCLES);
+        let tick_cycle = start.saturating_sub(silent_count as u64 * FRAME_CYCLES + SLOT_CYCLES);
         loop {
             let next_wake_cycle = run
                 .next_wake_cycle()
@@ -152,7 +150,7 @@ pub fn play_with_contacts(
             };
         }
         let pulse_widths = run.tick(tick_cycle);
-        if frame_index >= silent_frames {
+        if frame_index >= silent_count {
             widths.push(pulse_widths);
         }
     }
@@ -162,8 +160,8 @@ pub fn play_with_contacts(
     }
 }
 
-/// Indices of the received lines that end so shortly before a control tick that a few cycles decide whether main
-/// reads them before it.
+/// Indices of the received lines that end so shortly before a control tick that a few cycles decide whether main reads
+/// them before the tick.
 pub fn undecided_lines(
     received: &[SerialByte],
     first_pulse_cycle: u64,
@@ -177,7 +175,7 @@ pub fn undecided_lines(
         .filter_map(|(line, cycles_left)| (cycles_left < MAX_READING_CYCLES).then_some(line))
 }
 
-/// Number of frames before A1's first pulse if no command comes.
+/// Number of frames before A1's first pulse if no command arrives.
 fn frames_before_waking(robot: Robot<'static>) -> usize {
     let mut run = CoreRun::new(robot);
     (0..MAX_FRAMES_TO_WAKE)

@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use super::session::{DialogueLine, Sender};
 use crate::shared::plain::escape_controls;
 
-/// Number of lines that are printed of a run of successive `# t=` lines; the others are only counted.
+/// Number of lines printed of each run of consecutive `# t=` lines; the others are only counted.
 const MAX_SHOWN_LINES: usize = 3;
 
-/// Prints the lines of a dialogue. Of a run of successive `# t=` lines, which `watch` causes, it prints only the first
-/// three and the number of the others, unless `shows_all` is true.
+/// Prints the lines of a dialogue. A run of consecutive `# t=` lines, which `watch` causes, is shortened to its first
+/// three lines and the number of the others, unless `shows_all` is true.
 #[derive(Debug)]
 pub struct Printer {
     /// True if runs of `# t=` lines are printed completely.

@@ -31,7 +31,7 @@ pub struct FootSpan {
     pub to: f64,
 }
 
-/// The movements of a servo's foot, in order of time; there is no span while the servo rests.
+/// Lists the movements of a servo's foot in order of time, without a span while the servo rests.
 pub fn foot_spans(
     servo_frames: impl Iterator<Item = ServoFrame> + Clone,
     servo: usize,

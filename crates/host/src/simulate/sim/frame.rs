@@ -6,8 +6,8 @@ use simulated_uno::{CYCLES_PER_MS, Edge, Pin, pulses};
 /// Cycles of a frame of 20 ms.
 pub const FRAME_CYCLES: u64 = 20 * CYCLES_PER_MS;
 
-/// Cycles from one servo's pulse to the next servo's pulse. A pulse that comes up to half a slot
-/// before the start of a frame still belongs to that frame.
+/// Cycles from one servo's pulse to the next servo's pulse. A pulse that starts up to half a slot before the start of
+/// a frame still belongs to that frame.
 pub(super) const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
 
 /// The servo pulses of one frame, in servo order A1, A2, A3, A4.
@@ -48,14 +48,14 @@ pub fn servo_pins(robot: &Robot) -> [Pin; 4] {
     robot.servos().map(|servo| Pin::arduino(servo.pin))
 }
 
-/// The first cycle that belongs to the frame that starts at cycle `start`: half a slot earlier, so
-/// that a pulse that comes a little early is not counted to the previous frame.
+/// The first cycle that belongs to the frame that starts at cycle `start`: half a slot earlier, so that a pulse that
+/// starts a little early is not assigned to the previous frame.
 pub fn first_cycle(start: u64) -> u64 {
     start.saturating_sub(SLOT_CYCLES / 2)
 }
 
-/// Start of the first frame whose [`first_cycle`] is `current_cycle` or later. Frames start at cycle
-/// `anchor` and every 20 ms after it.
+/// Start of the first frame whose [`first_cycle`] is `current_cycle` or later. Frames start at cycle `anchor` and every
+/// 20 ms after it.
 pub fn next_start(anchor: u64, current_cycle: u64) -> u64 {
     anchor
         + (current_cycle + SLOT_CYCLES / 2)

@@ -9,8 +9,7 @@ use super::frame::{FRAME_CYCLES, first_cycle};
 pub struct FrameLog {
     /// Cycle at which the first frame's A1 pulse starts.
     pub first_start: u64,
-    /// Widths of each frame's pulses, cycles, in servo order; 0 without a pulse,
-    /// 65535 for one that is longer.
+    /// Widths of each frame's pulses, cycles, in servo order; 0 without a pulse, 65535 for a longer pulse.
     pub widths: Vec<[u16; 4]>,
     /// For each servo, the largest deviation of the distance between two successive pulses from 20 ms, cycles.
     pub max_period_error: [u64; 4],
@@ -32,7 +31,7 @@ impl FrameLog {
     }
 }
 
-/// Builds a [`FrameLog`] from edges, which may come in any number of parts.
+/// Builds a [`FrameLog`] from edges, which may arrive in any number of batches.
 #[derive(Debug)]
 pub struct FrameReader {
     pins: [Pin; 4],
@@ -61,7 +60,7 @@ impl FrameReader {
         }
     }
 
-    /// Reads edges in order of time. Edges of other pins are skipped.
+    /// Reads the next edges in order of time. Edges of other pins are skipped.
     pub fn read(&mut self, mut edges: Vec<Edge>) {
         // At equal cycles the falling edge comes first, so that back-to-back pulses do not overlap.
         edges.sort_by_key(|edge| (edge.cycle, edge.is_rising));
@@ -125,15 +124,15 @@ mod tests {
     const PINS: [Pin; 4] = [Pin::d(9), Pin::d(10), Pin::a(0), Pin::d(3)];
 
     fn pulse_edges(pin: Pin, start: u64, width: u64) -> [Edge; 2] {
-        [(start, true), (start + width, false)].map(|(cycle, high)| Edge {
+        [(start, true), (start + width, false)].map(|(cycle, is_rising)| Edge {
             cycle,
             pin,
-            is_rising: high,
+            is_rising,
         })
     }
 
-    /// Reads the edges in two parts, split at index `split_index`.
-    fn read_in_two(edges: &[Edge], split_index: usize, cycle: u64) -> FrameLog {
+    /// Reads the edges in two batches, split at index `split_index`.
+    fn read_in_two_batches(edges: &[Edge], split_index: usize, cycle: u64) -> FrameLog {
         let mut reader = FrameReader::new(PINS, 0);
         reader.read(edges[..split_index].to_vec());
         reader.read(edges[split_index..].to_vec());
@@ -153,7 +152,7 @@ mod tests {
         edges.sort_by_key(|edge| edge.cycle);
         let end = start + 4 * FRAME_CYCLES;
         for split_index in 0..edges.len() {
-            let log = read_in_two(&edges, split_index, end);
+            let log = read_in_two_batches(&edges, split_index, end);
             let [a, b, c] = [24_000, 26_000, 27_000];
             let widths = [[a, 0, 25_000, 0], [b, 0, 0, 0], [0; 4], [c, 0, 0, 0]];
             assert_eq!(
@@ -171,7 +170,7 @@ mod tests {
         let most_pins_high = |second_start: u64| {
             let mut edges = Vec::from(pulse_edges(PINS[0], 1_000_000, 100));
             edges.extend(pulse_edges(PINS[1], second_start, 100));
-            read_in_two(&edges, 0, 3_000_000).most_pins_high
+            read_in_two_batches(&edges, 0, 3_000_000).most_pins_high
         };
         assert_eq!(
             (most_pins_high(1_000_099), most_pins_high(1_000_100)),

@@ -236,8 +236,8 @@ fn record(
     Ok(recording)
 }
 
-/// The pulse widths, in cycles, that the firmware's core requests in each frame; `None` unless the
-/// firmware's banner says that it was built from the same core and tables as this program.
+/// The pulse widths, in cycles, that the firmware's core requests in each frame; `None` unless the firmware's banner
+/// shows that it was built from the same core and tables as this program.
 fn core_widths(
     robot: &Robot,
     recording: &Recording,
@@ -261,7 +261,7 @@ fn end_message(state: &State) -> String {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
-            // simavr's message if it knows no reason.
+            // simavr's message for an unknown reason.
             let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
                 known_reason => known_reason,

@@ -7,7 +7,7 @@ use simulated_uno::{Pin, Uno};
 
 use crate::Failure;
 
-/// The length of a press whose end is not given, ms.
+/// The duration of a press whose end is not given, ms.
 const DEFAULT_PRESS_MS: u64 = 200;
 
 /// A press of an input: its contact is closed for some time. Written as `button@2` or `nose@5.5-8`.

@@ -38,7 +38,7 @@ pub struct Report<'a> {
     /// The RAM in use; `None` for an image that is not an ELF, because it does not say where its data ends.
     #[serde(flatten)]
     pub ram: Option<Ram>,
-    /// Number of received bytes that the UNO lost.
+    /// Number of received bytes that were lost because the firmware read them too late.
     pub overruns: u64,
     /// The number of watchdog resets.
     pub resets: u64,
@@ -125,8 +125,9 @@ impl Report<'_> {
                 "Here the legs follow their servos exactly; `lizard twin` lets them lag."
             )?;
         }
-        let parts_of = |path: &CommandPath| [path.forward, path.left, path.turn];
-        if self.way.iter().any(|path| parts_of(path).contains(&None)) {
+        let is_undetermined =
+            |path: &CommandPath| [path.forward, path.left, path.turn].contains(&None);
+        if self.way.iter().any(is_undetermined) {
             write!(out, "{UNDECIDED_NOTE}")?;
         }
         writeln!(out)

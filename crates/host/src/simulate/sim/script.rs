@@ -77,8 +77,8 @@ impl Script {
         }
     }
 
-    /// Parses lines of the form `<ms> <command>`. Skips blank lines, lines that begin with `#`, and
-    /// a byte order mark. The run ends a second after the last command.
+    /// Parses lines of the form `<ms> <command>`. Skips blank lines, lines that begin with `#`, and a byte order mark.
+    /// The run ends a second after the last command.
     ///
     /// # Errors
     /// Fails if a line has no time or no command, or if the lines are out of order.
@@ -151,7 +151,7 @@ mod tests {
     fn an_error_names_its_line() {
         let message_of = |text| {
             Script::parse(text)
-                .expect_err("the script is invalid")
+                .expect_err("the script must be refused")
                 .to_string()
         };
         assert_eq!(

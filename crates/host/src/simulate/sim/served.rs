@@ -25,9 +25,9 @@ pub(super) fn new_board(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, F
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 
-/// Serves the UNO, by cable or by radio, until the program is ended, and closes and opens its contacts at their times.
-/// `link` becomes a symbolic link to the port, because the port's own name differs from run to run; the link is removed
-/// at the end.
+/// Serves the UNO, by cable or by radio, until a signal ends the program, and closes and opens its contacts at their
+/// times. `link` becomes a symbolic link to the port, because the port's own name differs from run to run; the link is
+/// removed at the end.
 ///
 /// # Errors
 /// Fails if this machine provides no pseudo terminal, or if something other than a link to one already exists at
@@ -81,7 +81,7 @@ pub(super) fn serve_until_interrupted(
             writeln!(
                 out,
                 "{}",
-                end_message(&printed_state, uno.flash(), &port_name)
+                state_message(&printed_state, uno.flash(), &port_name)
             )?;
         }
     }
@@ -89,7 +89,7 @@ pub(super) fn serve_until_interrupted(
 
 /// The message about a new state of the chip. A new board has nothing in flash at the firmware's address, so the chip
 /// stops as soon as the boot loader jumps there.
-fn end_message(state: &State, flash: &[u8], port: &Path) -> String {
+fn state_message(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
             "there is no firmware in this board yet; `lizard flash {}` writes it",
@@ -107,7 +107,7 @@ fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     thread::spawn(move || {
         for signal in &mut signals {
             if fs::read_link(&link).is_ok_and(|target| target == port) {
-                // If this fails, a dead link to a pseudo terminal remains, and the next run replaces it.
+                // If the removal fails, the next run replaces the broken link that remains.
                 let _ = fs::remove_file(&link);
             }
             let _ = signal_hook::low_level::emulate_default_handler(signal);
@@ -119,7 +119,7 @@ fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
 /// Makes `link` a symbolic link to `port`. Replaces a link to another pseudo terminal, which a killed run left behind.
 fn make_link(link: &Path, port: &Path) -> Result<(), Failure> {
     let failure_of = |error: io::Error| files::write_failure(link, &error);
-    let foreign_failure = || {
+    let occupied_failure = || {
         let name = link.display();
         Failure::Input(format!(
             "{name} already exists and is not a link to a pseudo terminal"
@@ -132,7 +132,7 @@ fn make_link(link: &Path, port: &Path) -> Result<(), Failure> {
         fs::create_dir_all(folder).map_err(failure_of)?;
     }
     symlink(port, link).map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => foreign_failure(),
+        io::ErrorKind::AlreadyExists => occupied_failure(),
         _ => failure_of(error),
     })
 }
@@ -149,11 +149,11 @@ mod tests {
         };
         let port = Path::new("out/uno");
         assert_eq!(
-            end_message(&crashed_state, &[0xff; 8], port),
+            state_message(&crashed_state, &[0xff; 8], port),
             "there is no firmware in this board yet; `lizard flash out/uno` writes it"
         );
         assert_eq!(
-            end_message(&crashed_state, &[0x0c, 0x94, 0xff], port),
+            state_message(&crashed_state, &[0x0c, 0x94, 0xff], port),
             "the firmware crashed at 0x7fe4: no such instruction or address"
         );
     }

@@ -45,7 +45,7 @@ pub enum Event<'a> {
 pub struct Recording {
     /// The firmware's first line; `None` if it has sent none.
     pub banner: Option<String>,
-    /// The answer to each command of the script; `None` if it did not come before the end of the run.
+    /// The answer to each command of the script; `None` if it did not arrive before the end of the run.
     pub answers: Vec<Option<String>>,
     /// Every pulse of the servos.
     pub frames: FrameLog,
@@ -86,7 +86,7 @@ pub fn play(
         loop {
             let next_command_ms = steps.peek().map_or(slice_end_ms, |step| step.ms);
             if let Some(change) =
-                contacts.next_if(|contact| contact.ms < slice_end_ms.min(next_command_ms))
+                contacts.next_if(|change| change.ms < slice_end_ms.min(next_command_ms))
             {
                 uno.run_until_cycle(change.ms * CYCLES_PER_MS);
                 change.apply(uno);
@@ -137,7 +137,7 @@ impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
         }))
     }
 
-    /// Takes the bytes that the UNO has sent, and reports the lines that end in them.
+    /// Reads the bytes that the UNO has sent, and reports the lines that end in them.
     fn receive(&mut self, uno: &mut Uno) -> io::Result<()> {
         for line in self.reader.read(&uno.take_transmitted()) {
             if line.is_answer() {

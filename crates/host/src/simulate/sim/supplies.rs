@@ -1,7 +1,7 @@
 //! The supply voltages and contacts of a simulated UNO, as a healthy robot has them.
 //!
-//! The firmware stops the pulses when a supply voltage is too low. So a simulated board needs, besides
-//! its own 5 V, the voltage at the pin that robot.toml gives for the servos' rail, behind its divider.
+//! The firmware stops the pulses when a supply voltage is too low. So a simulated board needs, besides its own 5 V, the
+//! divided voltage of the servos' rail at the pin that robot.toml names.
 
 use lizard_core::control::supply::Reading;
 use lizard_core::numbers::supplies::Supplies;
@@ -13,8 +13,8 @@ const BOARD_MV: f64 = 5_000.0;
 /// Counts of the analogue-to-digital converter at full scale.
 const FULL_SCALE_COUNTS: f64 = 1_024.0;
 
-/// The analogue pin that measures the servos' rail, and the voltage at that pin when the rail is
-/// healthy, mV. `None` if no pin measures the rail.
+/// The analogue pin that measures the servos' rail, and the voltage at that pin when the rail is healthy, mV. `None` if
+/// no pin measures the rail.
 pub fn healthy_rail(robot: &Robot) -> Option<(Pin, u16)> {
     let mv = healthy_rail_mv(&robot.firmware().supplies())?;
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))

@@ -6,10 +6,9 @@ use svg::node::element::Group;
 use super::analysis::Run;
 use super::footfall::{FootSpan, Phase, foot_spans};
 use super::spans::Span;
-use crate::shared::ink::pin_name;
 use crate::shared::ink::{
     Anchor, DARK, GREY, GRID_COLOUR, PANEL_COLOUR, SERVO_COLOURS, SERVO_PLACES, add_title, curve,
-    line, rectangle, svg_page, text, text_middle, text_start,
+    line, pin_name, rectangle, svg_page, text, text_middle, text_start,
 };
 
 /// Width of the picture, px.
@@ -24,13 +23,13 @@ const COMMANDS_Y: f64 = 88.0;
 const STRIPS_Y: f64 = 132.0;
 /// Height of a servo's strip, px.
 const STRIP_HEIGHT: f64 = 104.0;
-/// Distance between two strips, px.
+/// Gap between two strips, px.
 const STRIP_GAP: f64 = 14.0;
 /// Upper edge of the first row of footfalls, px.
 const FEET_Y: f64 = STRIPS_Y + 4.0 * (STRIP_HEIGHT + STRIP_GAP) + 34.0;
 /// Height of a row of footfalls, px.
 const FOOT_HEIGHT: f64 = 28.0;
-/// Distance between two rows of footfalls, px.
+/// Gap between two rows of footfalls, px.
 const FOOT_GAP: f64 = 8.0;
 /// Vertical position of the time axis, px.
 const AXIS_Y: f64 = FEET_Y + 4.0 * (FOOT_HEIGHT + FOOT_GAP) + 4.0;
@@ -122,8 +121,7 @@ impl Chart<'_> {
         group
     }
 
-    /// Half the angle range of a strip, deg. It is the same for all strips, so that their slopes can
-    /// be compared.
+    /// Half the angle range of a strip, deg; the same for all strips, so that their slopes can be compared.
     fn half_range_deg(&self) -> f64 {
         let sweeps = self
             .run
@@ -197,9 +195,8 @@ impl Chart<'_> {
         group
     }
 
-    /// A servo's angle as points (seconds, degrees), with one curve for each time span with
-    /// pulses. If there are many frames per pixel column, only the lowest and the highest angle of
-    /// each column are kept.
+    /// A servo's angle as points (seconds, degrees), with one curve for each time span with pulses. If there are many
+    /// frames per pixel column, only the lowest and the highest angle of each column are kept.
     fn angle_curves(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
         let is_dense =
             self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT_MARGIN - RIGHT_MARGIN);
@@ -325,8 +322,8 @@ impl Chart<'_> {
     }
 }
 
-/// Draws one time span of a footfall row: filled for stance, pale for still, outlined for swing, so
-/// that the picture is readable without colour. `corner` is the upper left one.
+/// Draws one time span of a footfall row: filled for stance, pale for still, outlined for swing, so that the picture is
+/// readable without colour. `corner` is the upper left corner.
 fn draw_foot_span(
     phase: Phase,
     colour: &str,
@@ -358,8 +355,8 @@ struct Curve {
 }
 
 impl Curve {
-    /// Adds a point in a pixel column. Only the lowest and the highest of the points in the same
-    /// column are kept. If `column` is `None`, all points are kept.
+    /// Adds a point in a pixel column. Only the lowest and the highest of the points in the same column are kept. If
+    /// `column` is `None`, all points are kept.
     fn add_point(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
             self.points.push(point);

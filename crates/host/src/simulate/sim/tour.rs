@@ -9,7 +9,7 @@ pub fn moving_gaits(robot: &Robot) -> Vec<&str> {
 }
 
 /// Names of the gaits of a demonstration: the first moving gait, then the one of the other moving gaits that is
-/// predicted to turn the robot most in a cycle. A robot with fewer than two moving gaits has fewer.
+/// predicted to turn the robot most in a cycle. With fewer than two moving gaits, the list is shorter.
 pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
     let gaits = moving_gaits(robot);
     let turn_of = |name: &str| {

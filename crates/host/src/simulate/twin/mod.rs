@@ -1,5 +1,5 @@
-//! `lizard twin`: the real firmware runs on the simulated UNO and moves a simulated robot; the output
-//! shows how the robot walks.
+//! `lizard twin`: runs the real firmware on the simulated UNO, moves a simulated robot by its pulses, and reports how the
+//! robot walks.
 
 pub mod replay;
 pub mod report;
@@ -152,7 +152,7 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     })
 }
 
-/// Builds a script for one round of a routine. The round begins after a second of standing, and the script ends two
+/// Builds a script for one round of a routine. The round starts after a second of standing, and the script ends two
 /// seconds after the round.
 fn round_script(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;

@@ -47,7 +47,7 @@ impl Replay {
         }
     }
 
-    /// The summary of a range of frames.
+    /// Summarises a range of frames.
     pub fn tally(&self, frames: Range<usize>) -> Tally {
         let start_place = match frames.start {
             0 => Place::START,
@@ -60,8 +60,8 @@ impl Replay {
         tally
     }
 
-    /// The gait of a stage and the frame indices of its last complete cycle. `None` unless the
-    /// stage's command is a moving gait that ran for at least two cycles.
+    /// The gait of a stage and the frame indices of its last complete cycle. `None` unless the stage's command is a
+    /// moving gait that ran for at least two cycles.
     pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self
             .robot

@@ -21,18 +21,17 @@ pub struct Report {
 pub struct Row {
     /// The command as it was sent.
     pub command: String,
-    /// Times of the command's first frame and of the first frame after the command, s since
-    /// power-on.
+    /// Times of the command's first frame and of the first frame after the command, s since power-on.
     pub seconds: [f64; 2],
-    /// Displacement of the body over the whole command.
-    pub way: PathParts,
+    /// Displacement of the body over the complete command.
+    pub way: Displacement,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
-    /// Displacement that `lizard gaits` predicts for one round of a routine with these servos; null
-    /// for a routine with inputs, for other commands, and if the script changes the speed.
-    pub round: Option<PathParts>,
-    /// Distance that each foot slid over the floor, mm, servo order. This field and all that follow
-    /// cover the cycle in `cycle`, or all frames of the command if `cycle` is null.
+    /// Displacement that `lizard gaits` predicts for one round of a routine with these servos; null for a routine with
+    /// inputs, for other commands, and if the script changes the speed.
+    pub round: Option<Displacement>,
+    /// Distance that each foot slid over the floor, mm, servo order. This field and all that follow cover the cycle in
+    /// `cycle`, or all frames of the command if `cycle` is null.
     pub foot_slip: [f64; 4],
     /// The largest lag of a leg behind its servo, deg.
     pub lag: f64,
@@ -46,10 +45,10 @@ pub struct Row {
     pub servo_error: f64,
 }
 
-/// The parts of a displacement. A part is null if the contact model cannot determine it, because two
-/// feet balance the other two (a tie).
+/// A displacement of the body. A component is null if the contact model cannot determine it, because two feet balance
+/// the other two (a tie).
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct PathParts {
+pub struct Displacement {
     /// Distance forward, mm.
     pub forward: Option<f64>,
     /// Distance to the left, mm.
@@ -62,17 +61,17 @@ pub struct PathParts {
 #[derive(Debug, Serialize)]
 pub struct Cycle {
     /// Displacement of the body in the cycle.
-    pub way: PathParts,
+    pub way: Displacement,
     /// The displacement that the contact model predicts for ideal servos.
-    pub predicted: PathParts,
-    /// Mean speed over the cycle, mm/s; null if the displacement is undecided.
+    pub predicted: Displacement,
+    /// Mean speed over the cycle, mm/s; null if the displacement is undetermined.
     pub speed: Option<f64>,
-    /// Predicted displacement divided by that of a robot with rigid legs; null if the legs are
-    /// rigid, or if with rigid legs the displacement is almost zero or undecided.
+    /// Predicted displacement divided by that of a robot with rigid legs; null if the legs are rigid, or if with rigid
+    /// legs the displacement is almost zero or undetermined.
     pub share_of_rigid: Option<f64>,
 }
 
-impl From<Prediction> for PathParts {
+impl From<Prediction> for Displacement {
     fn from(prediction: Prediction) -> Self {
         Self {
             forward: prediction.forward,
@@ -82,8 +81,8 @@ impl From<Prediction> for PathParts {
     }
 }
 
-/// Predicts one round of a routine with this model of the servos; `None` unless the command runs
-/// exactly one round of a routine.
+/// Predicts one round of a routine with this model of the servos; `None` unless the command runs exactly one round of a
+/// routine.
 fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
     let routine = robot.routine(command.strip_suffix(" 1")?)?;
     let round = Round::of(robot, routine);
@@ -94,8 +93,8 @@ fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Rou
     Some((round, prediction))
 }
 
-impl PathParts {
-    /// The parts of a travel that the prediction determines; all parts without a prediction.
+impl Displacement {
+    /// The components of a travel that the prediction determines; all components without a prediction.
     fn of(travel: Travel, prediction: Option<&Prediction>) -> Self {
         let keep_determined =
             |component: fn(&Prediction) -> Option<f64>, value: f64| match prediction {
@@ -111,8 +110,8 @@ impl PathParts {
 }
 
 impl Report {
-    /// Summarises a replay in one row for each command. `changes_speed` is true if the script changes
-    /// the speed of the gaits; cycles and predicted rounds are then left out.
+    /// Summarises a replay in one row for each command. `changes_speed` is true if the script changes the speed of the
+    /// gaits; cycles and predicted rounds are then left out.
     pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, changes_speed: bool) -> Self {
         let stages = replay
             .stages
@@ -135,11 +134,11 @@ impl Report {
             Row {
                 command: stage.command.clone(),
                 seconds: [seconds_at(stage.frames.start), seconds_at(stage.frames.end)],
-                way: PathParts::of(stage_tally.travel(), prediction),
+                way: Displacement::of(stage_tally.travel(), prediction),
                 cycle: cycle_tally.zip(cycle).map(|(tally, (gait, _))| Cycle {
-                    way: PathParts::of(tally.travel(), prediction),
+                    way: Displacement::of(tally.travel(), prediction),
                     predicted: prediction
-                        .map_or(PathParts::of(tally.travel(), None), |prediction| {
+                        .map_or(Displacement::of(tally.travel(), None), |prediction| {
                             (*prediction).into()
                         }),
                     speed: prediction
@@ -181,8 +180,7 @@ impl Report {
         Ok(())
     }
 
-    /// Prints a table of the gaits' cycles, and a line for each other command that moved the
-    /// body.
+    /// Prints a table of the gaits' cycles, and a line for each other command that moved the body.
     ///
     /// # Errors
     /// Fails if writing fails.
@@ -213,12 +211,12 @@ impl Report {
             let Some(cycle) = &row.cycle else { continue };
             write!(out, "{:name_width$}  ", row.command)?;
             for displacement in [&cycle.way, &cycle.predicted] {
-                for (part, decimals) in [
+                for (component, decimals) in [
                     (displacement.forward, 1),
                     (displacement.left, 1),
                     (displacement.turn, 1),
                 ] {
-                    write!(out, "{:>8}", format_part(part, decimals))?;
+                    write!(out, "{:>8}", format_component(component, decimals))?;
                 }
             }
             write!(
@@ -249,7 +247,7 @@ impl Report {
             let [from, to] = row.seconds;
             let displacement = &row.way;
             if [displacement.forward, displacement.left, displacement.turn]
-                .map(|part| part.is_some_and(|part| part.abs() > 0.05))
+                .map(|component| component.is_some_and(|component| component.abs() > 0.05))
                 == [false; 3]
             {
                 continue;
@@ -264,12 +262,12 @@ impl Report {
                 writeln!(out, "predicted: {}", describe_displacement(round))?;
             }
         }
-        let is_undecided = |displacement: &PathParts| {
+        let is_undetermined = |displacement: &Displacement| {
             displacement.forward.is_none()
                 || displacement.left.is_none()
                 || displacement.turn.is_none()
         };
-        if self.rows.iter().any(|row| is_undecided(&row.way)) {
+        if self.rows.iter().any(|row| is_undetermined(&row.way)) {
             write!(out, "\n{UNDECIDED_NOTE}")?;
         }
         Ok(())
@@ -277,15 +275,15 @@ impl Report {
 }
 
 /// Describes a displacement as text for the user.
-fn describe_displacement(displacement: &PathParts) -> String {
+fn describe_displacement(displacement: &Displacement) -> String {
     let [forward, left, turn] = [displacement.forward, displacement.left, displacement.turn]
-        .map(|part| format_part(part, 1));
+        .map(|component| format_component(component, 1));
     format!("ahead {forward} mm, left {left} mm, turn {turn} deg")
 }
 
-/// Formats a part of a displacement with its sign, never as `-0`; an unknown part becomes a dash.
-pub fn format_part(part: Option<f64>, decimals: usize) -> String {
-    part.map_or("-".to_owned(), |value| {
+/// Formats a component of a displacement with its sign, never as `-0`; an undetermined component becomes a dash.
+pub fn format_component(component: Option<f64>, decimals: usize) -> String {
+    component.map_or("-".to_owned(), |value| {
         format!("{:+.decimals$}", round_decimals(value, decimals as i32))
     })
 }

@@ -8,7 +8,7 @@ use lizard_twin::ServoModel;
 use serde::Serialize;
 
 use super::replay::Replay;
-use super::report::format_part;
+use super::report::format_component;
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::progress_bar;
@@ -18,7 +18,7 @@ use crate::shared::progress::progress_bar;
 struct Spread {
     /// The name of the gait.
     gait: String,
-    /// Number of variations that walked.
+    /// Number of simulated variations.
     times: usize,
     /// The 5th, 50th and 95th percentile of the distance forward, mm.
     forward: [f64; 3],
@@ -38,7 +38,7 @@ struct EffortShare {
     /// Supply voltage of the servos, V.
     volts: f64,
     /// The share on the robot's own floor, then the share on a floor with the highest friction of the variations; 1 is
-    /// the whole line.
+    /// the complete line.
     share: [f64; 2],
 }
 
@@ -95,13 +95,13 @@ pub fn run(
         if spreads.iter().any(|spread| spread.gait == gait.name()) {
             continue;
         }
-        let walk_once = |seed: u64| {
+        let simulate = |seed: u64| {
             bar.inc(1);
             Variation::of(robot.ground(), seed)
                 .with_play(seed)
                 .simulate_cycle(robot, gait, model)
         };
-        let paths: Vec<Travel> = (0..u64::from(variation_count)).map(walk_once).collect();
+        let paths: Vec<Travel> = (0..u64::from(variation_count)).map(simulate).collect();
         spreads.push(Spread::of(
             gait.name(),
             &paths,
@@ -160,9 +160,9 @@ fn print(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::
     writeln!(out)?;
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
-        let parts = [spread.forward, spread.left, spread.turn];
-        for value in parts.into_iter().flatten() {
-            write!(out, "{:>11}", format_part(Some(value), 1))?;
+        let components = [spread.forward, spread.left, spread.turn];
+        for value in components.into_iter().flatten() {
+            write!(out, "{:>11}", format_component(Some(value), 1))?;
         }
         writeln!(out)?;
     }

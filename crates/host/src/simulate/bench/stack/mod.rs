@@ -1,14 +1,12 @@
 //! The greatest depth of the stack, computed from the machine code.
 //!
-//! On a chip without memory protection, a stack that grows into the static data can change a
-//! pulse width or a decision of the guard, and nothing reports it. A measurement shows
-//! how deep the stack got, not how deep it can get: perhaps no interrupt came at the
-//! worst moment, or a rare error message was not printed. So this module follows every path
-//! through the code and adds up the bytes that it pushes.
+//! On a chip without memory protection, a stack that grows into the static data can change a pulse width or a decision
+//! of the guard without any report. A measurement shows how deep the stack was, not how deep it can be: perhaps no
+//! interrupt occurred at the worst moment, or a rare error message was not printed. So this module follows every path
+//! through the code and adds up the bytes that the path pushes.
 //!
-//! It decodes the instructions itself instead of reading avr-objdump's listing: only some
-//! thirty instructions matter to the stack, so the decoder is shorter than a parser of that
-//! listing, and the program needs no other tool.
+//! This module decodes the instructions itself instead of reading avr-objdump's listing: only some thirty instructions
+//! matter to the stack, so the decoder is shorter than a parser of that listing, and the program needs no other tool.
 //!
 //! The bound assumes the following. Interrupts do not nest, which is checked; only a handler that never returns,
 //! such as the watchdog's, may be interrupted once more. No function calls itself, nothing jumps to a computed
@@ -54,8 +52,8 @@ pub struct StackDepth {
 }
 
 impl StackDepth {
-    /// Computes an image's depths. A vector table is recognised by the `jmp` at
-    /// address 0; vectors that jump to avr-libc's `__bad_interrupt` are not in use.
+    /// Computes an image's depths. A vector table is recognised by the `jmp` at address 0; vectors that jump to
+    /// avr-libc's `__bad_interrupt` are not in use.
     ///
     /// # Errors
     /// See [`StackError`].

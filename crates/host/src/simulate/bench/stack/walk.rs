@@ -24,22 +24,22 @@ pub enum Context {
 enum Pointer {
     /// An unknown value.
     Unknown,
-    /// The value of the stack pointer after this many bytes were pushed since the function's beginning.
+    /// The value of the stack pointer after this many bytes were pushed since the function's entry.
     Depth(i32),
     /// A constant address.
     Address(u16),
 }
 
-/// The facts that are known before an instruction is executed.
+/// The abstract state before an instruction, which holds for every path to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct State {
-    /// Bytes pushed since the function's beginning.
+    /// Bytes pushed since the function's entry.
     depth: i32,
     /// The contents of r29:r28.
     pointer: Pointer,
-    /// The low byte of the constant in a 16-bit subtraction from r29:r28; the instruction for the high byte follows.
+    /// The low byte of the constant in a 16-bit subtraction from r29:r28, until the instruction for the high byte.
     low_byte: u8,
-    /// The constant that the previous instruction loaded into r26; `None` if it was another instruction.
+    /// The constant that the previous instruction loaded into r26; `None` if it loaded none.
     frame_size: Option<u8>,
 }
 
@@ -51,8 +51,8 @@ struct SharedRoutines {
 }
 
 impl SharedRoutines {
-    /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are
-    /// 20 - K bytes, and reserves a frame of the size given in r26.
+    /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are 20 - K bytes, and
+    /// reserves a frame of the size given in r26.
     fn of(image: &Image) -> Self {
         let routines_with = |prefix: &str| {
             let address_and_size = |symbol: &simulated_uno::Symbol| {
@@ -85,13 +85,11 @@ pub struct Walk<'a> {
 /// The effect of a function on the stack.
 #[derive(Debug, Clone, Copy)]
 pub struct FunctionSummary {
-    /// The most bytes of stack that the function and its callees use, without the function's own
-    /// return address.
+    /// The most bytes of stack that the function and its callees use, without the function's own return address.
     pub depth: u16,
-    /// True if the function returns. Code after a call of a function that does not return is not
-    /// part of the caller.
+    /// True if the function returns. Code after a call of a function that does not return is not part of the caller.
     pub can_return: bool,
-    /// The byte address at which an interrupt handler enables other interrupts; `None` if it does not.
+    /// The byte address at which an interrupt handler enables other interrupts; `None` if it never does.
     pub interrupts_enabled_at: Option<u32>,
 }
 
@@ -134,13 +132,12 @@ impl<'a> Walk<'a> {
         };
         let mut pending = vec![(entry, start_state)];
         while let Some((address, mut state)) = pending.pop() {
-            if let Some(state_before) = states.get(&address) {
-                if state_before.depth != state.depth {
+            if let Some(known_state) = states.get(&address) {
+                if known_state.depth != state.depth {
                     let reason = "is reached with more or less on the stack than before";
                     return Err(self.error_at(entry, address, reason));
                 }
-                if state_before.pointer == state.pointer || state_before.pointer == Pointer::Unknown
-                {
+                if known_state.pointer == state.pointer || known_state.pointer == Pointer::Unknown {
                     continue;
                 }
                 state.pointer = Pointer::Unknown;
@@ -153,7 +150,7 @@ impl<'a> Walk<'a> {
             let frame_bytes = state.frame_size.take().map(i32::from);
             let mut next_addresses = vec![next_address];
             match instruction.effect {
-                // A call of the next instruction is a short way to reserve two bytes.
+                // A call of the next instruction reserves two bytes; it is shorter than two pushes.
                 Effect::Call(target) if target == next_address => {
                     state.depth += RETURN_ADDRESS_BYTES
                 }
@@ -253,10 +250,10 @@ const UNKNOWN_FRAME_SIZE: &str = "reserves a frame of an unknown size";
 const UNKNOWN_STACK_POINTER: &str = "sets the stack pointer to an unknown value";
 
 impl State {
-    /// Applies an instruction that only changes the stack, the stack pointer or r29:r28. Returns
-    /// false if the stack pointer would become unknown.
+    /// Applies an instruction that only changes the stack, the stack pointer or r29:r28. Returns false if the stack
+    /// pointer would become unknown.
     fn apply(&mut self, effect: Effect) -> bool {
-        let move_pointer = |pointer: Pointer, change: i16| match pointer {
+        let offset_pointer = |pointer: Pointer, change: i16| match pointer {
             Pointer::Depth(depth) => Pointer::Depth(depth - i32::from(change)),
             Pointer::Address(address) => Pointer::Address(address.wrapping_add_signed(change)),
             Pointer::Unknown => Pointer::Unknown,
@@ -273,11 +270,11 @@ impl State {
                     Pointer::Unknown => return false,
                 }
             }
-            Effect::AddToPointer(change) => self.pointer = move_pointer(self.pointer, change),
+            Effect::AddToPointer(change) => self.pointer = offset_pointer(self.pointer, change),
             Effect::SubtractLow(low) => self.low_byte = low,
             Effect::SubtractHigh(high) => {
                 let amount = i16::from_le_bytes([self.low_byte, high]);
-                self.pointer = move_pointer(self.pointer, amount.wrapping_neg());
+                self.pointer = offset_pointer(self.pointer, amount.wrapping_neg());
             }
             Effect::LoadLow(low) => self.pointer = Pointer::Address(low.into()),
             Effect::LoadHigh(high) => {

@@ -1,4 +1,4 @@
-//! Tests of the figures that are computed from frames, on frames made for the purpose.
+//! Tests of the figures that are computed from frames, on synthetic frames.
 
 use super::*;
 
@@ -49,7 +49,7 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
 }
 
 #[test]
-fn walk_goes_forward_and_back_backward_and_left_turns_in_place() {
+fn walk_moves_forward_back_moves_backward_and_left_turns_in_place() {
     let robot = paper_robot();
     for (gait, forward, turn) in [
         ("walk", 34.16, 0.0),
@@ -67,20 +67,20 @@ fn walk_goes_forward_and_back_backward_and_left_turns_in_place() {
             log: &frames,
         };
         let paths = command_paths(run, &[span]);
-        let whole_path = paths
+        let total_path = paths
             .last()
-            .expect("the last path is that of the whole run");
+            .expect("the last path is that of the complete run");
         let error_of =
             |actual: Option<f64>, expected: f64| actual.map(|actual| (actual - expected).abs());
         assert!(
-            error_of(whole_path.forward, forward) < Some(0.35),
-            "{gait}: {whole_path:?}"
+            error_of(total_path.forward, forward) < Some(0.35),
+            "{gait}: {total_path:?}"
         );
         assert!(
-            error_of(whole_path.turn, turn) < Some(0.2),
-            "{gait}: {whole_path:?}"
+            error_of(total_path.turn, turn) < Some(0.2),
+            "{gait}: {total_path:?}"
         );
-        assert!(whole_path.forward.is_some() && whole_path.turn.is_some());
+        assert!(total_path.forward.is_some() && total_path.turn.is_some());
     }
 }
 
@@ -117,12 +117,12 @@ fn the_paths_of_two_commands_compose_to_the_path_of_the_run() {
             to,
         };
         let paths = command_paths(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
-        let whole_travel = robot.ground().travel(
+        let total_travel = robot.ground().travel(
             run.servo_frames()
                 .filter_map(|servo_frame| servo_frame.sweeps),
         );
-        let [first, second, whole_path] = &paths[..] else {
-            panic!("two commands and the whole: {paths:?}")
+        let [first, second, total_path] = &paths[..] else {
+            panic!("expected the paths of two commands and of the run: {paths:?}")
         };
         let travel_of = |path: &CommandPath| Travel {
             forward: path.forward.expect("the path is determined"),
@@ -133,11 +133,11 @@ fn the_paths_of_two_commands_compose_to_the_path_of_the_run() {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
         };
         assert!(
-            distance_between(travel_of(whole_path), whole_travel) < 1e-6,
-            "{whole_path:?} {whole_travel:?}"
+            distance_between(travel_of(total_path), total_travel) < 1e-6,
+            "{total_path:?} {total_travel:?}"
         );
         let combined = compose_travel(travel_of(first), travel_of(second));
-        assert!(distance_between(travel_of(whole_path), combined) < 1e-6);
+        assert!(distance_between(travel_of(total_path), combined) < 1e-6);
     }
 }
 
