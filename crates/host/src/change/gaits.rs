@@ -55,7 +55,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// Prints the table that the arguments select, the JSON objects or the trace.
+/// Prints the table, the JSON objects or the trace that the arguments select.
 ///
 /// # Errors
 /// Fails for an invalid robot.toml, a gait that it does not have, or an output that cannot be written.
@@ -112,7 +112,7 @@ struct GaitLine<'a> {
     gait: &'a str,
     /// Duration of one cycle, s.
     period: f64,
-    /// Fastest speed of a servo over one frame, deg/s.
+    /// Highest speed of a servo over one frame, deg/s.
     peak_speed: f64,
     /// The servo that has this speed, A1 to A4.
     peak_servo: &'static str,
@@ -148,7 +148,7 @@ struct LeastMargin {
     phase: f64,
 }
 
-/// A predicted displacement of the robot: mm ahead, mm to the left, and deg counter-clockwise.
+/// A predicted displacement of the robot: mm forward, mm to the left, and deg counter-clockwise.
 #[derive(Serialize)]
 struct Displacement {
     forward: Option<f64>,

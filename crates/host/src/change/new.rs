@@ -1,4 +1,4 @@
-//! `lizard new`: a robot.toml to begin with.
+//! `lizard new`: writes a robot.toml to start from.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Write};
@@ -22,7 +22,7 @@ pub struct Args {
 /// Writes the file.
 ///
 /// # Errors
-/// Fails if it already exists or cannot be written.
+/// Fails if the file already exists or cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
     let file = File::create_new(&args.file);

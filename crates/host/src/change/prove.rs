@@ -61,10 +61,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         one_in: args.one_in,
         offset: args.offset,
     };
-    let rows = Proof::row_count(guard) * args.spread.own_piece_count(PIECE_COUNT) as u64
+    let row_count = Proof::row_count(guard) * args.spread.own_piece_count(PIECE_COUNT) as u64
         / PIECE_COUNT as u64;
     let bar = progress_bar(
-        rows as usize,
+        row_count as usize,
         "{bar:40} {percent} % of all rows, {eta} left",
     );
     let comparison = GuardComparison::new(&robot, guard, sample);
@@ -86,8 +86,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     out.flush()?;
     match proof.wrong_count() {
         0 => Ok(()),
-        wrong => Err(Failure::Impossible(format!(
-            "the guard decides {wrong} pairs wrong that are outside the band or in a cell"
+        wrong_count => Err(Failure::Impossible(format!(
+            "the guard decides {wrong_count} pairs wrong that are outside the band or in a cell"
         ))),
     }
 }

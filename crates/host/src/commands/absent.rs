@@ -1,4 +1,4 @@
-//! The commands that this build lacks because it was built without one of the cargo features.
+//! The commands that this build lacks because a cargo feature that they need is off.
 
 use std::ffi::OsString;
 
@@ -59,7 +59,7 @@ fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) ->
     )
 }
 
-/// The failure of a command line that begins with a command which this build lacks or does not know.
+/// The failure of a command line that starts with a command that this build lacks or does not know.
 #[cfg_attr(
     all(
         feature = "simulator",
@@ -69,8 +69,8 @@ fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) ->
     ),
     allow(dead_code, reason = "a complete build lacks nothing")
 )]
-pub(super) fn explain_absence(typed: &[OsString], commands: &[CommandEntry]) -> Failure {
-    explain_absence_in_build(typed, commands, is_feature_built)
+pub(super) fn explain_absence(words: &[OsString], commands: &[CommandEntry]) -> Failure {
+    explain_absence_in_build(words, commands, is_feature_built)
 }
 
 /// The arguments of a command that this build lacks; nothing reads them.
@@ -111,11 +111,11 @@ fn absent_command_failure(
 }
 
 fn explain_absence_in_build(
-    typed: &[OsString],
+    words: &[OsString],
     commands: &[CommandEntry],
     has_feature: impl Fn(&str) -> bool,
 ) -> Failure {
-    let word = typed.first().map(|word| word.to_string_lossy());
+    let word = words.first().map(|word| word.to_string_lossy());
     let word = word.as_deref().unwrap_or_default();
     let names: Vec<String> = commands.iter().map(CommandEntry::name).collect();
     let is_called =

@@ -33,7 +33,7 @@ pub struct MergeArgs {
 /// Fails if a part is missing, is given twice or does not belong to the others, or if the command
 /// itself fails.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
-    let merged = MergedParts::of(read_all_parts(&args.files)?)?;
+    let merged = MergedParts::join(read_all_parts(&args.files)?)?;
     match merged.command.as_str() {
         #[cfg(feature = "paper")]
         "prove" => merged.run(crate::change::prove::run),
@@ -89,7 +89,7 @@ struct MergedParts {
 
 impl MergedParts {
     /// Joins the parts; fails unless they are all the parts of one computation.
-    fn of(parts: Vec<PartOutput>) -> Result<Self, Failure> {
+    fn join(parts: Vec<PartOutput>) -> Result<Self, Failure> {
         let refuse = |reason: String| Err(Failure::Input(reason));
         let Some(first) = parts.first() else {
             return refuse(
@@ -177,8 +177,8 @@ mod tests {
     }
 
     fn refusal_of(parts: Vec<PartOutput>) -> String {
-        match MergedParts::of(parts) {
-            Ok(_) => panic!("the parts are accepted"),
+        match MergedParts::join(parts) {
+            Ok(_) => panic!("the parts must be refused"),
             Err(failure) => failure.to_string(),
         }
     }
@@ -217,7 +217,7 @@ mod tests {
         );
         assert!(refusal_of(Vec::new()).starts_with("there are no parts"));
         assert!(
-            MergedParts::of(vec![part_output("2/2"), part_output("1/2")]).is_ok(),
+            MergedParts::join(vec![part_output("2/2"), part_output("1/2")]).is_ok(),
             "parts are accepted in any order"
         );
     }

@@ -1,7 +1,7 @@
 //! The table of the program's commands. A row has a command's name, its arguments, the function that runs it, the cargo
 //! features that it needs and its alias. The rows are grouped as in the help.
 //!
-//! A build without a feature lacks some commands, and explains that when one of them is used. The table therefore
+//! A build without a feature lacks some commands, and says so when one of them is used. The table therefore
 //! defines both the enum of the commands that this build has and the list of all commands.
 
 mod absent;
@@ -198,7 +198,7 @@ pub fn program() -> clap::Command {
     groups::with_groups(Cli::command().after_help(addresses), KNOWN_COMMANDS)
 }
 
-/// Lists the project's addresses that are not empty, one a line, for the end of the help.
+/// Lists the project's addresses that are not empty, one per line, for the end of the help.
 fn list_addresses(page: &str, source: &str) -> String {
     let lines = [
         ("Page", page, ""),

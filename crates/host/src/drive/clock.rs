@@ -49,13 +49,13 @@ pub struct Deadline {
 
 impl Deadline {
     /// Starts a time limit. [`Deadline::has_passed`] must be called after each read of the port.
-    pub fn after(time: Duration) -> Self {
+    pub fn after(duration: Duration) -> Self {
         let clock = Clock::start();
-        let end = clock.now + time;
+        let end = clock.now + duration;
         Self { clock, end }
     }
 
-    /// True if the time is over.
+    /// True if the time limit is over.
     pub fn has_passed(&mut self) -> bool {
         self.clock.now() >= self.end
     }

@@ -1,7 +1,7 @@
-//! `lizard flash image`: writes the firmware and a robot to a file, for any program that writes boards.
+//! `lizard flash image`: writes the firmware and a robot to a file, for any program that flashes boards.
 //!
-//! `lizard flash` writes a robot to a board. A user with another programmer, or with the board at
-//! another machine, needs a file.
+//! `lizard flash` writes a robot to a board. A user with another programmer, or with the board
+//! attached to another machine, needs a file.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -40,9 +40,9 @@ struct ImageFile {
     /// The version of the firmware; null in a file with only the robot.
     firmware: Option<&'static str>,
     robot: RobotIdentity,
-    /// The size of the robot's section.
+    /// The size of the robot's section, bytes.
     robot_bytes: usize,
-    /// The bytes of flash that are reserved for it.
+    /// The space in flash that is reserved for this section, bytes.
     robot_space: u16,
 }
 

@@ -118,12 +118,12 @@ fn text(lines: &[PortLine]) -> String {
 mod tests {
     use super::*;
 
-    fn port_line(vendor: u16, product_id: u16, product: Option<&str>) -> PortLine {
+    fn port_line(vendor_id: u16, product_id: u16, product_name: Option<&str>) -> PortLine {
         PortLine::from_port(UsbPort {
             name: "/dev/no-such-port".to_owned(),
-            vendor_id: vendor,
+            vendor_id,
             product_id,
-            product_name: product.map(str::to_owned),
+            product_name: product_name.map(str::to_owned),
         })
     }
 

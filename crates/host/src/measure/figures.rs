@@ -64,15 +64,15 @@ impl MeasuredKey {
     }
 }
 
-/// The measured keys as a table for people.
+/// The measured keys as a text table for the user.
 pub(super) fn table_text(keys: &[MeasuredKey]) -> String {
     let mut text = format!("{:<28}measured   error  robot.toml\n", "");
     for key in keys {
         let verdict = verdict(key.differs);
-        let digits = key.decimals;
+        let decimals = key.decimals;
         let _ = writeln!(
             text,
-            "{:<28}{:>8.digits$}{:>8.digits$}{:>12.digits$}   {verdict}",
+            "{:<28}{:>8.decimals$}{:>8.decimals$}{:>12.decimals$}   {verdict}",
             key.key, key.measured, key.error, key.robot
         );
     }
@@ -88,10 +88,10 @@ pub(super) fn toml_lines(keys: &[MeasuredKey]) -> String {
             table = &key.table;
             let _ = writeln!(text, "[{table}]");
         }
-        let digits = key.decimals;
+        let decimals = key.decimals;
         let _ = writeln!(
             text,
-            "{} = {:.digits$} # measured, to {:.digits$}; it was {:.digits$}",
+            "{} = {:.decimals$} # measured, to {:.decimals$}; it was {:.decimals$}",
             key.key, key.measured, key.error, key.robot
         );
     }
@@ -107,13 +107,13 @@ pub(super) fn with_measured_keys(text: &str, keys: &[MeasuredKey]) -> Result<Str
     let mut text = text.to_owned();
     for key in keys.iter().filter(|key| !key.agrees) {
         let name = format!("{}.{}", key.table, key.key);
-        let ([value, error, old], digits) = (
-            [key.measured, key.error, key.robot].map(|figure| figure * key.scale),
+        let ([value, error, old], decimals) = (
+            [key.measured, key.error, key.robot].map(|value| value * key.scale),
             key.decimals,
         );
-        let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
+        let rounded: f64 = format!("{value:.decimals$}").parse().unwrap_or(value);
         text = with_number(&text, &name, rounded)?;
-        let comment = format!("{value:.digits$} +- {error:.digits$}, was {old:.digits$}");
+        let comment = format!("{value:.decimals$} +- {error:.decimals$}, was {old:.decimals$}");
         text = with_comment(&text, &name, "measured:", &comment)?;
     }
     Ok(text)

@@ -1,4 +1,4 @@
-//! The reading of a film's file, and the search for the robot's path in it.
+//! Reads a film from its file, and finds the robot's path in it.
 
 use std::fmt::Display;
 use std::fs;
@@ -17,7 +17,7 @@ use crate::shared::files::note_input;
 /// Fails for a film that cannot be read, or one whose tags show no path.
 pub(super) fn analyse(path: &Path, rate: Option<f64>, setup: Setup) -> Result<NamedFilm, Failure> {
     let name = path.display().to_string();
-    let failure_of = |trouble: Trouble| film_failure(&name, &trouble);
+    let failure_of = |error: Trouble| film_failure(&name, &error);
     let analysis = read_film(path, rate, failure_of)?
         .analyse(setup)
         .map_err(failure_of)?;
@@ -25,8 +25,8 @@ pub(super) fn analyse(path: &Path, rate: Option<f64>, setup: Setup) -> Result<Na
 }
 
 /// The failure of a film, with its name and the reason.
-pub(super) fn film_failure(name: &str, trouble: &dyn Display) -> Failure {
-    Failure::Input(format!("{name}: {trouble}"))
+pub(super) fn film_failure(name: &str, reason: &dyn Display) -> Failure {
+    Failure::Input(format!("{name}: {reason}"))
 }
 
 /// Reads a film from its file, or from a folder of pictures.

@@ -40,7 +40,7 @@ impl Filming {
     }
 }
 
-/// Parses a number in a range. The error text has `meaning` and the range.
+/// Parses a number in a range. The error text states `meaning` and the range.
 pub(super) fn parse_number(
     text: &str,
     [low, high]: [f64; 2],

@@ -8,7 +8,7 @@ use crate::Failure;
 /// File extensions of pictures.
 const PICTURE_EXTENSIONS: [&str; 3] = ["png", "jpg", "jpeg"];
 
-/// The pictures of a folder in the order of the numbers in their names, each with its time, s.
+/// Returns the pictures of a folder in the order of the numbers in their names, each with its time, s.
 ///
 /// # Errors
 /// Fails if the folder cannot be read or has no pictures, or if neither `rate` nor the names give the times.
@@ -36,8 +36,8 @@ pub(super) fn list_pictures(
         )));
     }
     files.sort_by_key(|(stem, _)| sort_key(stem));
-    let timed_picture = |(i, (stem, path)): (usize, (String, PathBuf))| match rate {
-        Some(rate) => Ok((i as f64 / rate, path)),
+    let timed_picture = |(index, (stem, path)): (usize, (String, PathBuf))| match rate {
+        Some(rate) => Ok((index as f64 / rate, path)),
         None => match parse_seconds(&stem) {
             Some(seconds) => Ok((seconds, path)),
             None => Err(Failure::Input(format!(

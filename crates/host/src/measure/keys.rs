@@ -13,7 +13,7 @@ use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
 
-/// Largest difference between the cycle times of a gait by two robot.toml files that still count as the same robot, s.
+/// Largest difference between a gait's cycle times in two robot.toml files that still count as the same robot, s.
 const MAX_PERIOD_DIFFERENCE_S: f64 = 0.005;
 
 /// Find the keys of robot.toml with which the model goes as far as the robot did
@@ -54,7 +54,7 @@ struct MeasuredGait {
     gait: String,
     /// Speed, percent.
     speed: f64,
-    /// Cycle time by the robot.toml with which the gait was measured, s; `None` if that file does not have the gait.
+    /// Cycle time in the robot.toml with which the gait was measured, s; `None` if that file does not have the gait.
     period_expected: Option<f64>,
     forward: Component,
     left: Component,
@@ -72,7 +72,7 @@ struct Component {
 ///
 /// # Errors
 /// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, or if the
-/// output would replace something or cannot be written.
+/// output would replace an input or a robot, or cannot be written.
 pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     let old_text = args.robot.text()?;
     let robot = args.robot.load()?;
@@ -82,7 +82,7 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     }
     files::check_replaceable(&args.output)?;
     let spinner = Spinner::new("simulating the gaits");
-    let failure_of = |trouble: Trouble| Failure::Input(trouble.to_string());
+    let failure_of = |error: Trouble| Failure::Input(error.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
         (0..count).into_par_iter().map(walk).collect()
     })

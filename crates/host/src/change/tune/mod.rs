@@ -119,24 +119,24 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
 /// Returns the gait of this name that the search has to surpass.
 fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     robot.gait(name).ok_or_else(|| {
-        let moving = robot.gaits().iter().filter(|gait| gait.has_movement());
-        let gaits: Vec<&str> = moving.map(|gait| gait.name()).collect();
+        let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
+        let names: Vec<&str> = moving_gaits.map(|gait| gait.name()).collect();
         Failure::Input(format!(
             "robot.toml has no gait `{name}` to surpass; --gait takes one of {}{}",
-            gaits.join(", "),
-            suggestion_text(name, gaits)
+            names.join(", "),
+            suggestion_text(name, names)
         ))
     })
 }
 
-/// Refuses a name that robot.toml already has or that is invalid.
+/// Refuses a name that is invalid or that a gait of robot.toml already has.
 fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     let refuse = |reason: String| Err(Failure::Input(format!("--name {name}: {reason}")));
     if robot.gait(name).is_some() {
         return refuse("robot.toml already has a gait of this name".to_owned());
     }
-    let gait = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
-    match robot.with_gait(&gait) {
+    let gait_toml = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
+    match robot.with_gait(&gait_toml) {
         Err(error) => refuse(error.problem),
         Ok(new_robot) if new_robot.gait(name).is_none() => {
             refuse("it is not a valid name".to_owned())
@@ -205,10 +205,10 @@ mod tests {
         args: Args,
     }
 
-    const PAPER: &str = include_str!("../../../../../robots/paper.toml");
+    const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 
     fn run_tune(arguments: &str) -> Result<Comparison, String> {
-        let robot = Robot::parse(PAPER).expect("paper.toml is valid");
+        let robot = Robot::parse(PAPER_TOML).expect("paper.toml is valid");
         let line = CommandLine::try_parse_from(
             std::iter::once("tune").chain(arguments.split_whitespace()),
         );
@@ -227,17 +227,17 @@ mod tests {
         assert!(comparison.faster_count >= 195, "{comparison:?}");
         // The printed text may be appended to a robot.toml, and its gait walks as predicted.
         let mut printed = Vec::new();
-        report::print(&comparison, &mut printed).expect("a vector takes it");
-        let printed = String::from_utf8(printed).expect("it is text");
+        report::print(&comparison, &mut printed).expect("writing to a vector succeeds");
+        let printed = String::from_utf8(printed).expect("the output is UTF-8");
         let robot =
-            Robot::parse(&format!("{PAPER}\n{printed}")).expect("the printed gait is valid");
+            Robot::parse(&format!("{PAPER_TOML}\n{printed}")).expect("the printed gait is valid");
         let gait = robot
             .gait("tuned")
             .expect("the printed gait is in the file");
         let forward = robot
             .predict(gait)
             .forward
-            .expect("the contact model decides it");
+            .expect("the contact model predicts the distance");
         assert!(
             (forward / gait.period() - tuned.predicted).abs() < 0.01,
             "{forward}"

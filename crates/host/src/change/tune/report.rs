@@ -11,14 +11,14 @@ use lizard_tune::{Comparison, SPREAD_TEXT};
 pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let Comparison {
         unit,
-        robot_count: robots,
-        faster_count: faster,
+        robot_count,
+        faster_count,
         ..
     } = comparison;
     let (gait, tuned) = (&comparison.gait.name, &comparison.tuned.name);
     writeln!(
         out,
-        "# {unit} with servos of at most {:.1} deg/s; the last three on {robots} random robots and floors\n#",
+        "# {unit} with servos of at most {:.1} deg/s; the last three on {robot_count} random robots and floors\n#",
         comparison.rate
     )?;
     let name_width = [gait, tuned]
@@ -31,11 +31,11 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
         "gait"
     )?;
     for row in [&comparison.gait, &comparison.tuned] {
-        let [low, middle, high] = row.speeds;
-        let (margin, value) = row.margin;
+        let [low, median, high] = row.speeds;
+        let (margin_name, margin) = row.margin;
         writeln!(
             out,
-            "# {:name_width$}  {:8.2}  {:6.1}  {value:.3} {margin:10}  {:9.1}  {:6.1}  {low:6.1}  {middle:6.1}  {high:6.1}",
+            "# {:name_width$}  {:8.2}  {:6.1}  {margin:.3} {margin_name:10}  {:9.1}  {:6.1}  {low:6.1}  {median:6.1}  {high:6.1}",
             row.name, row.period, row.rate, row.predicted, row.sg90
         )?;
     }
@@ -43,14 +43,14 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
     if comparison.is_better() {
         writeln!(
             out,
-            "# {tuned} is faster than {gait} on {faster} of {robots}, and by {:.0} % where 5 % are slower.",
+            "# {tuned} is faster than {gait} on {faster_count} of {robot_count}, and by {:.0} % where 5 % are slower.",
             100.0 * comparison.gain()
         )?;
     } else {
         writeln!(
             out,
             "# No gait of these kinds was found that surpasses {gait} on the slow ones; this is the best,\n\
-             # faster on {faster} of {robots}:"
+             # faster on {faster_count} of {robot_count}:"
         )?;
     }
     writeln!(out, "# At random: {}.\n", SPREAD_TEXT.replace('\n', "\n# "))?;

@@ -100,33 +100,34 @@ mod tests {
     #[test]
     fn a_backup_is_in_effect_again_after_restore_and_load() {
         let mut link = connect_paper_robot();
-        link.command("trim 3 -4.25").expect("it is accepted");
-        link.command("boot walk").expect("it is accepted");
+        link.command("trim 3 -4.25").expect("the line is accepted");
+        link.command("boot walk").expect("the line is accepted");
         let saved = calibration_of(&mut link);
-        let saved = Calibration::parse(&saved.to_toml(), "a.toml").expect("it is a calibration");
-        link.command("factory").expect("it is accepted");
-        send_calibration(&saved, &mut link).expect("it is accepted and saved");
-        link.command("factory").expect("it is accepted");
-        link.command("load").expect("something was saved");
+        let saved = Calibration::parse(&saved.to_toml(), "a.toml").expect("the backup is valid");
+        link.command("factory").expect("the line is accepted");
+        send_calibration(&saved, &mut link).expect("the calibration is accepted and saved");
+        link.command("factory").expect("the line is accepted");
+        link.command("load").expect("a calibration was saved");
         assert!(calibration_of(&mut link).is_equivalent_to(&saved));
     }
 
     #[test]
     fn a_refused_calibration_keeps_the_active_settings_and_saves_nothing() {
         let mut link = connect_paper_robot();
-        link.command("trim 3 -4.25").expect("it is accepted");
+        link.command("trim 3 -4.25").expect("the line is accepted");
         let before = calibration_of(&mut link);
         let mut calibration = before.clone();
         calibration.servos[0].trim = 5.0;
         calibration.servos[2].scale = 99.0;
-        let error = send_calibration(&calibration, &mut link).expect_err("it is refused");
+        let error =
+            send_calibration(&calibration, &mut link).expect_err("the scale must be refused");
         assert_eq!(
             error.to_string(),
             "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, and the \
              robot keeps its old settings"
         );
         assert!(calibration_of(&mut link).is_equivalent_to(&before));
-        let load = link.ask("load").expect("it answers").answer;
+        let load = link.ask("load").expect("the robot answers").answer;
         assert!(load.starts_with("err 9"), "{load}");
     }
 }

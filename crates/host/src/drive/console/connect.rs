@@ -10,7 +10,7 @@ use super::port;
 use crate::shared::plain::escape_controls;
 use crate::{Failure, RobotFile};
 
-/// The arguments that say which board a subcommand connects to.
+/// The arguments that select the board to connect to.
 #[derive(clap::Args, Debug)]
 pub struct ConnectionArgs {
     /// The board's serial port [default: the one that has a UNO, or the only one]
@@ -28,7 +28,7 @@ pub struct ConnectionArgs {
     robot: Option<PathBuf>,
 }
 
-/// A finder of the board's port. Unless the user named a port, each `open` searches anew, because
+/// A finder of the board's port. Unless the user named a port, each `open` searches again, because
 /// a board that is plugged in again may get another port.
 #[derive(Debug)]
 pub struct BoardFinder {
@@ -49,7 +49,7 @@ pub struct Connection {
 }
 
 impl ConnectionArgs {
-    /// Makes the finder that these arguments ask for; for `--sim`, also starts the simulated UNO. `command` is the
+    /// Makes the finder for these arguments; for `--sim`, also starts the simulated UNO. `command` is the
     /// subcommand with the arguments before the port, for messages.
     ///
     /// # Errors
@@ -106,7 +106,7 @@ fn simulate_board(
 }
 
 impl BoardFinder {
-    /// Opens the port, which resets the board. [`Connection::greet`] comes next.
+    /// Opens the port, which resets the board. Call [`Connection::greet`] next.
     ///
     /// # Errors
     /// Fails if there is no board, there are several, or the port cannot be opened.

@@ -1,15 +1,15 @@
 //! The robot's `deadman` while a person drives.
 //!
-//! A robot that is out of reach would walk on. So while a person drives it, `deadman` is
+//! A robot that is out of range would keep walking. So while a person drives it, `deadman` is
 //! set: the robot ends a gait by itself if it has received no line for that time. When the gait
-//! has ended, and when the program ends, the robot gets its own setting back.
+//! has ended, and when the program ends, the robot's own setting is restored.
 
 use std::time::Duration;
 
 use lizard_core::console::word::Word;
 
-/// The `deadman` while a person drives, ms, unless the robot's own is shorter. People set round numbers: a robot that
-/// has this one got it from a program that ended without restoring the setting.
+/// The `deadman` while a person drives, ms, unless the robot's own is shorter. Users set round numbers: a robot that
+/// has this value got it from a program that ended without restoring the setting.
 const DRIVING_DEADMAN_MS: u16 = 901;
 /// Interval between the lines that keep the robot walking: short enough that two of three may be lost, even if the
 /// robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
@@ -47,7 +47,7 @@ impl Deadman {
         let word = line.split_whitespace().next().unwrap_or_default();
         if matches!(word, "cal" | "save") && self.is_set {
             // `cal` shows and `save` keeps the robot's own setting, so it is restored for that line. It is set again
-            // afterwards, because the robot may have begun to walk since its last status.
+            // afterwards, because the robot may have started to walk since its last status.
             return (&[DeadmanLine::RestoreForOneLine], &[DeadmanLine::Set]);
         }
         // Only a gait or a routine makes the robot walk; their names are not among the console's words.
@@ -61,7 +61,7 @@ impl Deadman {
         }
     }
 
-    /// Returns the text of a line.
+    /// Returns the text of the line to send; [`DeadmanLine::Restore`] also marks the setting as restored.
     pub(super) fn console_line(&mut self, deadman_line: DeadmanLine) -> String {
         let own_ms = self.own_ms.unwrap_or(0);
         let ms = match deadman_line {
@@ -77,8 +77,8 @@ impl Deadman {
         format!("deadman {ms}")
     }
 
-    /// Reads a line of the answer to `cal`; returns false if the line does not belong to one.
-    pub(super) fn take_answer_line(&mut self, line: &str) -> bool {
+    /// Reads a line of the answer to `cal`; returns false if the line cannot belong to that answer.
+    pub(super) fn read_cal_line(&mut self, line: &str) -> bool {
         if let Some(ms) = line
             .strip_prefix("# deadman ")
             .and_then(|ms| ms.parse().ok())
@@ -90,7 +90,7 @@ impl Deadman {
             .any(|start| line.starts_with(start))
     }
 
-    /// Notes a user's line that the robot has accepted.
+    /// Updates the robot's own setting after the robot has accepted a line of the user.
     pub(super) fn note_accepted_line(&mut self, line: &str) {
         let line = line.to_ascii_lowercase();
         match line.split_whitespace().collect::<Vec<_>>()[..] {

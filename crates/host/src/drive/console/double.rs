@@ -32,13 +32,13 @@ pub const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 pub fn connect_robot(robot_toml: &str) -> Link<ConsoleDouble> {
     let robot = Robot::parse(robot_toml).expect("the robot.toml is valid");
     let mut link = Link::new(ConsoleDouble::power_on(&robot), Timeouts::default());
-    link.greet().expect("it has a banner");
+    link.greet().expect("the robot sends a banner");
     link
 }
 
 /// Returns the active calibration of a connected robot.
 pub fn calibration_of(link: &mut Link<ConsoleDouble>) -> Calibration {
-    block_on(lizard_calibrate::read_settings(link)).expect("it answers")
+    block_on(lizard_calibrate::read_settings(link)).expect("the robot answers")
 }
 
 impl ConsoleDouble {

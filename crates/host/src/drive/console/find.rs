@@ -1,4 +1,4 @@
-//! Finds the serial port of the board if none was named.
+//! Finds the serial port of the board if the user has not named it.
 
 use serialport::{SerialPortInfo, SerialPortType};
 
@@ -120,12 +120,12 @@ fn join_names(ports: &[UsbPort]) -> String {
 mod tests {
     use super::*;
 
-    fn port(name: &str, vendor: u16) -> UsbPort {
+    fn port(name: &str, vendor_id: u16) -> UsbPort {
         UsbPort {
             name: format!("/dev/{name}"),
-            vendor_id: vendor,
+            vendor_id,
             product_id: 0x43,
-            product_name: (vendor == 0x2341).then(|| "Arduino_Uno".to_owned()),
+            product_name: (vendor_id == 0x2341).then(|| "Arduino_Uno".to_owned()),
         }
     }
 
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn no_port_and_several_ports_are_reported_with_the_remedy() {
-        let message = choose_from(&[]).expect_err("there is no port");
+        let message = choose_from(&[]).expect_err("the choice must fail without a port");
         assert!(
             message.contains("carries data") && message.contains("lizard console /dev/ttyACM0")
         );

@@ -157,8 +157,8 @@ impl BoardInfo {
     }
 }
 
-/// Asks for the status. A robot that has just been reset reports no voltage until its analog-to-digital converter has
-/// run, so it is asked again for up to a second.
+/// Asks for the status. A robot that has just been reset reports no voltage until its analogue-to-digital converter
+/// has run, so the question is repeated for up to a second.
 fn wait_for_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
         let status = ask_status(link)?;
@@ -186,13 +186,13 @@ mod tests {
     #[test]
     fn the_report_shows_firmware_robot_and_calibration_and_changes_nothing() {
         let mut link = connect_paper_robot();
-        link.command("trim 3 -4.25").expect("it is accepted");
+        link.command("trim 3 -4.25").expect("the line is accepted");
         let before = calibration_of(&mut link);
         let paper = lizard_robot::Robot::parse(PAPER_TOML).expect("paper.toml is valid");
         let hash = format!("{:08x}", paper.firmware().hash());
         let banner = format!("# lizard 1.2.3 robot paper {hash}, send help for the commands");
         let board =
-            BoardInfo::ask("COM3".to_owned(), Some(&banner), &mut link).expect("it answers");
+            BoardInfo::ask("COM3".to_owned(), Some(&banner), &mut link).expect("the robot answers");
         let text = board.text();
         for line in [
             "port        COM3\n".to_owned(),

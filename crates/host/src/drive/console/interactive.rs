@@ -1,4 +1,4 @@
-//! `lizard console`: a user's or a script's dialogue with the robot; a script comes on standard input.
+//! `lizard console`: a user's or a script's dialogue with the robot; a script is read from standard input.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
@@ -97,7 +97,7 @@ struct Dialogue {
     /// The clock of the session, so that a pause of this program does not count as silence of the robot.
     clock: Clock,
     recorder: Option<FileRecorder>,
-    /// Beginning of the status line, which shows whether the session is recorded.
+    /// Start of the status line: `REC` while the session is recorded.
     status_line_prefix: &'static str,
 }
 
@@ -112,10 +112,7 @@ impl Dialogue {
             board.link.send(&line)?;
         }
         // At most 51 lines, since keys are not handled meanwhile.
-        for timeout in [ROBOT_READ_TIMEOUT; 1]
-            .into_iter()
-            .chain([Duration::ZERO; 50])
-        {
+        for timeout in std::iter::once(ROBOT_READ_TIMEOUT).chain([Duration::ZERO; 50]) {
             let Some(line) = board.link.read_line(timeout)? else {
                 break;
             };
@@ -141,7 +138,7 @@ impl Dialogue {
     }
 
     /// Sends the lines of standard input. A port whose opening does not reset the board may be a radio link: then
-    /// `deadman` is set as for a person, and stays set after the last line if the robot still walks.
+    /// `deadman` is set as for a person, and stays set after the last line if the robot is still walking.
     fn run_script(
         mut self,
         mut board: Connection,

@@ -1,8 +1,8 @@
 //! A line-based connection to the robot over any stream of bytes.
 //!
-//! An answer may have several lines, and a board may be reset or unplugged, or may be another device. So after each
-//! line the link waits for the one line that begins with `ok` or `err`, and collects the lines that begin with `#`
-//! until then. If no answer arrives in time, it fails with a message.
+//! An answer may have several lines, the board may be reset or unplugged, and the port may belong to another device.
+//! So after each line the link waits for the one line that begins with `ok` or `err`, and collects the lines that
+//! begin with `#` until then. If no answer arrives in time, the request fails with a message.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -17,11 +17,11 @@ use crate::drive::clock::Deadline;
 pub const BANNER_START: &str = "# lizard ";
 /// Largest number of `status` lines sent to a board that was not reset: its autobaud needs up to five lines to find the
 /// port's rate, and a radio may lose some.
-const MAX_QUESTIONS: u32 = 8;
+const MAX_STATUS_LINES: u32 = 8;
 
 /// The beginning of an answer to `status`.
 const STATUS_ANSWER_START: &str = "ok gait=";
-/// Length at which a received line is cut: the firmware's lines are shorter, but noise may be endless.
+/// Length to which a received line is truncated: the firmware's lines are shorter, but noise may never end a line.
 const MAX_LINE_BYTES: usize = 512;
 
 /// Time limits of a connection.
@@ -123,7 +123,7 @@ impl<P: Read + Write> Link<P> {
             }
             first_line = first_line.or(Some(line));
         }
-        for _ in 0..MAX_QUESTIONS {
+        for _ in 0..MAX_STATUS_LINES {
             let mut deadline = Deadline::after(self.timeouts.answer / 4);
             self.send("status")?;
             while let Some(line) = self.read_line_before(&mut deadline)? {
@@ -173,7 +173,7 @@ impl<P: Read + Write> Link<P> {
         block_on(lizard_calibrate::send_command(self, line)).map_err(LinkError::from)
     }
 
-    /// Waits for the next line, for at most `wait`.
+    /// Waits for the next line for at most `wait`; returns `None` if none arrives.
     ///
     /// # Errors
     /// Fails if the port is gone.
@@ -181,12 +181,12 @@ impl<P: Read + Write> Link<P> {
         self.read_line_before(&mut Deadline::after(wait))
     }
 
-    /// Waits for `time`, and discards the lines that arrive meanwhile.
+    /// Waits for `duration`, and discards the lines that arrive meanwhile.
     ///
     /// # Errors
     /// Fails if the port is gone.
-    pub fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
-        let mut deadline = Deadline::after(time);
+    pub fn pause(&mut self, duration: Duration) -> Result<(), LinkError> {
+        let mut deadline = Deadline::after(duration);
         while self.read_line_before(&mut deadline)?.is_some() {}
         Ok(())
     }
@@ -209,7 +209,7 @@ impl<P: Read + Write> Link<P> {
             Ok(0) => Err(LinkError::Gone),
             Ok(count) => {
                 for byte in &bytes[..count] {
-                    self.take_byte(*byte);
+                    self.push_byte(*byte);
                 }
                 Ok(())
             }
@@ -220,7 +220,7 @@ impl<P: Read + Write> Link<P> {
         }
     }
 
-    fn take_byte(&mut self, byte: u8) {
+    fn push_byte(&mut self, byte: u8) {
         if byte != b'\n' {
             if self.partial_line.len() < MAX_LINE_BYTES {
                 self.partial_line.push(byte);
@@ -249,8 +249,8 @@ impl<P: Read + Write> Console for Link<P> {
         Self::ask(self, line)
     }
 
-    async fn pause(&mut self, time: Duration) -> Result<(), LinkError> {
-        Self::pause(self, time)
+    async fn pause(&mut self, duration: Duration) -> Result<(), LinkError> {
+        Self::pause(self, duration)
     }
 }
 
@@ -344,16 +344,16 @@ mod tests {
     const BANNER_LINE: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
-    fn a_banner_that_follows_a_cut_off_line_directly_is_found() {
-        for cut in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
-            let bytes = format!("{cut}# lizard 0.2.0 robot paper 1\r\n");
+    fn a_banner_directly_after_a_cut_off_line_is_found() {
+        for cut_line in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
+            let bytes = format!("{cut_line}# lizard 0.2.0 robot paper 1\r\n");
             let bytes: &'static str = bytes.leak();
             let mut link = Script::link(&[Some(bytes)]);
-            let banner = link.greet().expect("it greets");
+            let banner = link.greet().expect("the robot greets");
             assert_eq!(
                 banner.as_deref(),
                 Some("# lizard 0.2.0 robot paper 1"),
-                "{cut:?}"
+                "{cut_line:?}"
             );
         }
     }
@@ -363,14 +363,14 @@ mod tests {
         let mut link = Script::link(&[Some(
             "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);
-        let banner = link.greet().expect("it is a lizard");
+        let banner = link.greet().expect("the device is a lizard");
         assert_eq!(banner.as_deref(), Some("# lizard 0.2.0 robot paper 1a"));
     }
 
     #[test]
     fn a_board_that_was_not_reset_is_recognized_by_its_status() {
         let mut link = Script::link(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
-        assert_eq!(link.greet().expect("it is a lizard"), None);
+        assert_eq!(link.greet().expect("the device is a lizard"), None);
         assert_eq!(link.port.sent_text, "status\n");
     }
 
@@ -379,7 +379,7 @@ mod tests {
         let message_of = |pieces: &[Option<&'static str>]| {
             let error = Script::link(pieces)
                 .greet()
-                .expect_err("it is not a lizard");
+                .expect_err("the device must be refused");
             error.to_string()
         };
         let other_device_message = message_of(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
@@ -396,8 +396,8 @@ mod tests {
             Some(BANNER_LINE),
             Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),
         ]);
-        link.greet().expect("it is a lizard");
-        let reply = link.ask("cal").expect("it answers");
+        link.greet().expect("the device is a lizard");
+        let reply = link.ask("cal").expect("the robot answers");
         assert_eq!(reply.notes, ["# boot stand", "# deadman 0"]);
         assert_eq!(reply.answer, "ok cal");
     }
@@ -405,8 +405,10 @@ mod tests {
     #[test]
     fn a_refusal_names_the_line_and_the_reason() {
         let mut link = Script::link(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
-        link.greet().expect("it is a lizard");
-        let error = link.command("trim 1 50").expect_err("it is refused");
+        link.greet().expect("the device is a lizard");
+        let error = link
+            .command("trim 1 50")
+            .expect_err("the trim must be refused");
         assert_eq!(
             error.to_string(),
             "the robot refuses `trim 1 50`: 3 trim must be -20..20"
@@ -416,20 +418,20 @@ mod tests {
     #[test]
     fn silence_and_a_vanished_port_are_different_errors() {
         let mut link = Script::link(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
-        link.greet().expect("it is a lizard");
+        link.greet().expect("the device is a lizard");
         assert!(matches!(link.ask("walk"), Err(LinkError::NoAnswer(line)) if line == "walk"));
         assert!(matches!(link.ask("walk"), Err(LinkError::Gone)));
     }
 
     #[test]
-    fn an_endless_line_is_cut_and_control_characters_are_replaced() {
+    fn an_endless_line_is_truncated_and_control_characters_are_replaced() {
         let mut link = Script::link(&[]);
         for _ in 0..2000 {
-            link.take_byte(b'a');
+            link.push_byte(b'a');
         }
-        link.take_byte(b'\n');
+        link.push_byte(b'\n');
         for byte in b"\x1b[2Jhi\r\n\r\n\n" {
-            link.take_byte(*byte);
+            link.push_byte(*byte);
         }
         assert_eq!(link.lines[0].len(), MAX_LINE_BYTES);
         assert_eq!(link.lines[1], "\u{fffd}[2Jhi");

@@ -21,7 +21,7 @@ pub enum PortError {
     /// The port does not exist.
     #[error("there is no {name}; USB serial ports of this machine: {ports}")]
     Missing {
-        /// The port that was asked for.
+        /// The port's name, as the user gave it.
         name: String,
         /// The USB serial ports that exist.
         ports: String,
@@ -46,7 +46,7 @@ pub enum PortError {
     /// Any other error.
     #[error("{name} cannot be opened: {error}")]
     Other {
-        /// The port that was asked for.
+        /// The port's name, as the user gave it.
         name: String,
         /// The error of the serial port library.
         error: serialport::Error,
@@ -83,7 +83,7 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
         ErrorKind::Io(io::ErrorKind::NotFound) => missing_port_error(name),
         ErrorKind::NoDevice => busy_error("another program".to_owned()),
-        _ if cfg!(unix) && is_other_than_terminal(name) => PortError::NotAPort(name.to_owned()),
+        _ if cfg!(unix) && is_not_terminal(name) => PortError::NotAPort(name.to_owned()),
         _ => PortError::Other {
             name: name.to_owned(),
             error,
@@ -118,7 +118,7 @@ fn missing_port_error(name: &str) -> PortError {
 }
 
 /// Returns the program that keeps the port open. Waits up to [`MAX_CLOSING_TIME`] for a program that is about to close
-/// it, such as a console that is quitting or a simulated board that clears its line.
+/// it, such as a console that is quitting or a simulated board that discards unread bytes.
 fn find_persistent_holder(name: &str) -> Option<String> {
     let start = Instant::now();
     loop {
@@ -148,7 +148,7 @@ pub(in crate::drive) fn find_holder(name: &str) -> Option<String> {
     })
 }
 
-fn is_other_than_terminal(name: &str) -> bool {
+fn is_not_terminal(name: &str) -> bool {
     use std::io::IsTerminal;
     std::fs::File::open(name).is_ok_and(|file| !file.is_terminal())
 }
@@ -161,14 +161,14 @@ mod tests {
     use super::*;
 
     fn open_error(name: &str) -> PortError {
-        open(name).expect_err("the port does not open")
+        open(name).expect_err("the port must not open")
     }
 
     #[test]
     fn a_missing_port_and_a_file_that_is_not_a_port_have_different_errors() {
         let message = open_error("/dev/no-such-port").to_string();
         assert!(message.starts_with("there is no /dev/no-such-port; USB serial ports"));
-        let file = tempfile::NamedTempFile::new().expect("a file");
+        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
         assert_eq!(
             open_error(&name).to_string(),
@@ -179,32 +179,32 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_program_that_is_about_to_close_the_port_is_waited_for() {
-        let file = tempfile::NamedTempFile::new().expect("a file");
+    fn opening_waits_for_a_program_that_is_about_to_close_the_port() {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
         let mut process = std::process::Command::new("sleep")
             .arg("0.1")
-            .stdin(file.reopen().expect("it opens"))
+            .stdin(file.reopen().expect("the file can be reopened"))
             .spawn()
-            .expect("it starts");
+            .expect("`sleep` starts");
         let message = open_error(&name).to_string();
-        LIMIT.wait_for_exit(&mut process).expect("it ends");
+        LIMIT.wait_for_exit(&mut process).expect("the process ends");
         assert_eq!(message, format!("{name} is not a serial port"));
     }
 
     #[cfg(target_os = "linux")]
     #[test]
     fn a_port_that_another_program_has_open_is_refused_with_that_programs_name() {
-        let file = tempfile::NamedTempFile::new().expect("a file");
+        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
         let mut process = std::process::Command::new("sleep")
             .arg("60")
-            .stdin(file.reopen().expect("it opens"))
+            .stdin(file.reopen().expect("the file can be reopened"))
             .spawn()
-            .expect("it starts");
+            .expect("`sleep` starts");
         let message = open_error(&name).to_string();
-        process.kill().expect("it ends");
-        LIMIT.wait_for_exit(&mut process).expect("it ends");
+        process.kill().expect("the process can be killed");
+        LIMIT.wait_for_exit(&mut process).expect("the process ends");
         let id = process.id();
         assert_eq!(
             message,

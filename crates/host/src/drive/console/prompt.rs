@@ -4,7 +4,7 @@ use crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
-/// The largest number of lines kept in the history.
+/// Largest number of lines kept in the history.
 const MAX_HISTORY_LINES: usize = 500;
 
 /// The effect of a key.
@@ -198,7 +198,11 @@ mod tests {
             shown_lines.push(prompt.text().to_owned());
         }
         assert_eq!(shown_lines, ["walk", "stand", "stand", "walk", "s", "s"]);
-        assert_eq!(prompt.history(), ["stand", "walk"], "a repeated line once");
+        assert_eq!(
+            prompt.history(),
+            ["stand", "walk"],
+            "a repeated line is kept once"
+        );
     }
 
     #[test]
@@ -221,7 +225,7 @@ mod tests {
         assert_eq!(
             press_control(&mut prompt, 'd'),
             PromptEvent::Edited,
-            "it deletes"
+            "Ctrl-D deletes the next character"
         );
         assert_eq!(prompt.text(), "");
         assert_eq!(press(&mut prompt, KeyCode::Enter), PromptEvent::Edited);

@@ -49,7 +49,7 @@ pub enum Event {
     Status(String),
     /// A pose that the robot reports because of `watch`.
     Pose {
-        /// Frames since power-on, 50 a second.
+        /// Frames since power-on, 50 per second.
         frame: u64,
         /// Servo angles in degrees, chassis frame, A1 to A4.
         angles: [f64; 4],
@@ -167,13 +167,13 @@ mod tests {
             Event::from_note("# fault: x"),
             Event::Gone,
         ];
-        for (n, event) in events.iter().enumerate() {
-            let now = start + Duration::from_millis(20 * n as u64);
+        for (index, event) in events.iter().enumerate() {
+            let now = start + Duration::from_millis(20 * index as u64);
             recorder
                 .write(now, event.clone())
-                .expect("a vector takes it");
+                .expect("writing to a vector succeeds");
         }
-        let text = String::from_utf8(out).expect("it is text");
+        let text = String::from_utf8(out).expect("the output is UTF-8");
         assert_eq!(
             text,
             "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n\
@@ -186,7 +186,7 @@ mod tests {
             .lines()
             .map(|line| {
                 serde_json::from_str::<Entry>(line)
-                    .expect("it is an entry")
+                    .expect("the line is an entry")
                     .event
             })
             .collect();
@@ -195,9 +195,9 @@ mod tests {
 
     #[test]
     fn an_existing_file_is_not_overwritten() {
-        let file = tempfile::NamedTempFile::new().expect("a file");
+        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let message = create(file.path())
-            .expect_err("the file exists")
+            .expect_err("an existing file must be refused")
             .to_string();
         assert!(message.ends_with("already exists; name a new file for the session"));
     }
@@ -209,7 +209,7 @@ mod tests {
         let event = Event::Sent("walk".to_owned());
         let message = recorder
             .write(Instant::now(), event)
-            .expect_err("the buffer is too small");
+            .expect_err("writing beyond the buffer must fail");
         let message = message.to_string();
         assert!(message.starts_with("cannot write a.jsonl: "), "{message}");
     }

@@ -14,7 +14,7 @@ const PROMPT_SIGN: &str = "> ";
 /// A terminal that reports single keys. Dropping it restores the terminal.
 pub struct Screen {
     out: Stdout,
-    /// Numbers of columns that the two lines at the bottom take, the second up to the cursor; `None` if they
+    /// Numbers of columns that the two lines at the bottom take, the second up to the cursor; `None` while they
     /// are not drawn.
     drawn_columns: Option<[usize; 2]>,
     /// The latest drawing: status line, visible part of the input, cursor's column in it, terminal width.
@@ -113,8 +113,8 @@ impl Screen {
     }
 }
 
-/// Returns the number of rows from the first of the two lines down to the cursor, for the columns that both take. A
-/// terminal that was made narrower has wrapped them into more rows.
+/// Returns the number of rows from the first of the two lines down to the cursor, given the columns that each takes. A
+/// terminal that was made narrower has wrapped the lines into more rows.
 fn rows_above_cursor([status, cursor]: [usize; 2], width: usize) -> usize {
     let width = width.max(1);
     status.div_ceil(width).max(1) + cursor / width

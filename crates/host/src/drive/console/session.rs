@@ -5,7 +5,7 @@
 //! status line the console sends `status` twice a second, and more often while a person drives;
 //! these answers are not shown, and a user's line waits for at most one of them. `stop` waits for
 //! none: it is sent at once, and repeated until the robot answers it, since a link may lose a line
-//! or its answer. Whoever runs a script has to know if a line was refused, so failed lines are
+//! or its answer. The caller of a script has to know if a line was refused, so failed lines are
 //! counted.
 
 use std::collections::VecDeque;
@@ -83,7 +83,7 @@ impl Question {
 #[derive(Debug)]
 struct UnansweredStop {
     /// Time at which the user asked to stop.
-    since: Instant,
+    requested_at: Instant,
     /// Time at which `stop` is sent again.
     next_send: Instant,
     /// Number of times that `stop` was sent.
@@ -105,7 +105,7 @@ pub struct Session {
     late_answers_until: Instant,
     /// The lines that wait to be sent, the next one first.
     queue: VecDeque<QueuedLine>,
-    /// The handling of `deadman`, if a person drives.
+    /// The robot's `deadman` and its replacement; `None` unless a person drives.
     deadman: Option<Deadman>,
     /// True if the program asks for the status repeatedly.
     polls_status: bool,
@@ -150,7 +150,7 @@ impl Session {
         }
     }
 
-    /// Marks the dialogue as one with a person. The robot could walk out of reach, so `deadman`
+    /// Marks the dialogue as one with a person. The robot could walk out of range, so `deadman`
     /// is set while it walks.
     #[must_use]
     pub fn with_person(mut self) -> Self {
@@ -197,7 +197,7 @@ impl Session {
         self.sent_count += 1;
         self.events.push(Event::Sent("stop".to_owned()));
         self.unanswered_stop.get_or_insert(UnansweredStop {
-            since: now,
+            requested_at: now,
             next_send: now,
             sent_count: 0,
             is_reported: false,
@@ -257,8 +257,8 @@ impl Session {
         None
     }
 
-    /// Drops the queued lines, since the robot has not confirmed its `deadman`: out of reach, a gait
-    /// would go on. Returns the message to the user.
+    /// Drops the queued lines, since the robot has not confirmed its `deadman`: out of range, it would
+    /// keep walking. Returns the message to the user.
     fn drop_queued_lines(&mut self) -> Option<String> {
         for queued in std::mem::take(&mut self.queue) {
             if let QueuedLine::Line(line) = queued {
@@ -292,20 +292,20 @@ impl Session {
         let is_stop_refused = self.unanswered_stop.is_some() && is_stop_refusal(line);
         if (line == "ok stop" || is_stop_refused) && !self.is_stop_pending() {
             return self
-                .take_stop_answer(line)
+                .handle_stop_answer(line)
                 .then_some(visible_line)
                 .flatten();
         }
         if let (Some((Question::Deadman(_), _)), Some(deadman)) =
             (&self.pending_question, &mut self.deadman)
-            && deadman.take_answer_line(line)
+            && deadman.read_cal_line(line)
         {
             return None;
         }
         if line.starts_with('#') {
             self.events.push(Event::from_note(line));
             if line.starts_with(BANNER_START) {
-                // The board has restarted, and has forgotten the question.
+                // The board was reset, so it will not answer the question.
                 self.pending_question = None;
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
@@ -350,13 +350,13 @@ impl Session {
         matches!(&self.pending_question, Some((Question::Line(line), _)) if line == "stop")
     }
 
-    /// Takes an answer to `stop`; returns false if no `stop` is unanswered.
-    fn take_stop_answer(&mut self, line: &str) -> bool {
+    /// Handles an answer to `stop`; returns false if no `stop` is unanswered.
+    fn handle_stop_answer(&mut self, line: &str) -> bool {
         let Some(stop) = self.unanswered_stop.take() else {
             return false;
         };
         if stop.sent_count == 1 {
-            self.late_answers_until = stop.since;
+            self.late_answers_until = stop.requested_at;
         }
         // Answers come in order, so the answer to the line before `stop` has been lost.
         if let Some((Question::Line(sent_line), _)) = self.pending_question.take() {
@@ -371,15 +371,15 @@ impl Session {
         let elapsed_since = |start: Instant| now.saturating_duration_since(start);
         if let Some(stop) = &mut self.unanswered_stop
             && !stop.is_reported
-            && elapsed_since(stop.since) >= SILENCE_TIMEOUT
+            && elapsed_since(stop.requested_at) >= SILENCE_TIMEOUT
         {
             stop.is_reported = true;
             return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
         }
-        let is_late = |(question, start): &mut (Question, Instant)| {
+        let is_overdue = |(question, start): &mut (Question, Instant)| {
             elapsed_since(*start) >= question.timeout()
         };
-        let (question, _) = self.pending_question.take_if(is_late)?;
+        let (question, _) = self.pending_question.take_if(is_overdue)?;
         Some(match question {
             Question::Line(line) => {
                 let message = format!("(no answer to `{line}`)");

@@ -20,10 +20,10 @@ const MAX_CLOSED_CHECKS: u32 = 10;
 /// other files exist only once they are complete.
 pub fn exit_when_closed() {
     let watch_terminal = || {
-        let mut closed_checks = 0;
-        while closed_checks < MAX_CLOSED_CHECKS {
+        let mut closed_check_count = 0;
+        while closed_check_count < MAX_CLOSED_CHECKS {
             thread::sleep(CHECK_INTERVAL);
-            closed_checks = if is_open() { 0 } else { closed_checks + 1 };
+            closed_check_count = if is_open() { 0 } else { closed_check_count + 1 };
         }
         std::process::exit(0)
     };

@@ -51,34 +51,34 @@ mod tests {
 
     #[test]
     fn each_robots_section_follows_the_same_code_or_stands_alone() {
-        let code = Image::from_hex(CODE_HEX).expect("it is Intel HEX");
+        let code = Image::from_hex(CODE_HEX).expect("the code is Intel HEX");
         let code = code.bytes();
         assert_eq!(Mark::find(code), Some(Mark::THIS_FIRMWARE));
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
-        let mut count = 0;
+        let mut robot_count = 0;
         for file in std::fs::read_dir(folder).expect("the folder robots/ is readable") {
             let path = file.expect("the folder is readable").path();
             let robot = Robot::load(&path).expect("the robot.toml is valid");
-            let image = image(&robot).expect("it fits");
-            let (start, section) = image.bytes().split_at(START_ADDRESS.into());
-            let (code_in_image, gap) = start.split_at(code.len());
+            let image = image(&robot).expect("the image fits the flash");
+            let (code_area, section) = image.bytes().split_at(START_ADDRESS.into());
+            let (code_in_image, gap) = code_area.split_at(code.len());
             assert!(code_in_image == code, "{}", path.display());
             assert!(gap.iter().all(|byte| *byte == BLANK));
             assert!(section == robot.section(), "{}", path.display());
-            let robot_image = robot_only_image(&robot).expect("it fits");
+            let robot_image = robot_only_image(&robot).expect("the image fits the flash");
             assert!(robot_image.bytes() == section);
             assert_eq!(robot_image.end(), image.end());
-            count += 1;
+            robot_count += 1;
         }
-        assert!(count >= 4, "{count} robots");
+        assert!(robot_count >= 4, "{robot_count} robots");
     }
 
     #[test]
     fn the_error_names_a_file_that_is_not_an_image() {
-        let file = tempfile::NamedTempFile::new().expect("a temporary file is created");
-        std::fs::write(file.path(), "[servo]\n").expect("it is written");
+        let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
+        std::fs::write(file.path(), "[servo]\n").expect("the file can be written");
         let message = read_hex_image(file.path())
-            .expect_err("it is not an image")
+            .expect_err("a TOML file must be refused")
             .to_string();
         let name = file.path().display();
         assert_eq!(

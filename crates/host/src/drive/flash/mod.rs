@@ -58,7 +58,7 @@ struct FlashReport {
     /// The name of the port.
     port: String,
     bytes_written: usize,
-    /// Bytes that were already right.
+    /// Bytes that were already correct.
     bytes_kept: usize,
     /// The firmware's version; null if the firmware answered without its first line.
     firmware: Option<String>,
@@ -91,11 +91,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: calling the boot loader of the board at {board_name}");
-    let failure_of_port = |message: String| Failure::Impossible(format!("{board_name}: {message}"));
+    let port_failure = |message: String| Failure::Impossible(format!("{board_name}: {message}"));
     let (board, page_counts) = write_image(board, &image, target, args.json)
-        .map_err(|error| failure_of_port(error.to_string()))?;
+        .map_err(|error| port_failure(error.to_string()))?;
     let banner = greet(board).map_err(|error| {
-        failure_of_port(format!(
+        port_failure(format!(
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
@@ -115,7 +115,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     find::choose_port(ports, "flash").map_err(|error| {
         Failure::Impossible(match error {
-            // In this message, other commands suggest a simulated board; `flash` needs a real one.
+            // The usual message suggests a simulated board; `flash` needs a real one.
             FindError::NoPort { .. } => "no board found: this machine has no USB serial port. \
                  Connect the UNO by a cable that carries data (some only charge), or name its \
                  port: lizard flash /dev/ttyACM0"
@@ -195,9 +195,9 @@ fn failure_of(error: UploadError) -> Failure {
 }
 
 /// Returns the message about a finished upload.
-fn summary(counts: PageCounts, time: Duration) -> String {
+fn summary(counts: PageCounts, duration: Duration) -> String {
     let [written, kept] = [counts.written, counts.kept].map(|pages| pages * PAGE_BYTES);
-    let seconds = time.as_secs_f64();
+    let seconds = duration.as_secs_f64();
     match written {
         0 => format!("nothing to write: all {kept} bytes are right; {seconds:.1} s"),
         _ => format!(
@@ -220,8 +220,8 @@ mod tests {
     #[test]
     fn the_summary_counts_bytes() {
         let summary_of = |written, kept| {
-            let time = Duration::from_millis(1240);
-            summary(PageCounts { written, kept }, time)
+            let duration = Duration::from_millis(1240);
+            summary(PageCounts { written, kept }, duration)
         };
         assert_eq!(
             summary_of(2, 210),
@@ -235,9 +235,9 @@ mod tests {
 
     #[test]
     fn only_a_board_without_arduinos_usb_chip_may_be_a_nano() {
-        let port = |name: &str, vendor| UsbPort {
+        let port = |name: &str, vendor_id| UsbPort {
             name: name.to_owned(),
-            vendor_id: vendor,
+            vendor_id,
             product_id: 0x43,
             product_name: None,
         };
@@ -250,7 +250,8 @@ mod tests {
     #[test]
     fn no_board_or_several_are_refused_with_the_remedy() {
         let message_of = |ports: &[UsbPort]| {
-            let error = choose_port(ports).expect_err("there is not exactly one port");
+            let error =
+                choose_port(ports).expect_err("the choice must fail unless there is one port");
             error.to_string()
         };
         assert!(message_of(&[]).ends_with("lizard flash /dev/ttyACM0"));

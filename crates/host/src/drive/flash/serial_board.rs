@@ -60,8 +60,8 @@ impl SerialBoard {
         Ok(self.port()?.set_baud_rate(baud)?)
     }
 
-    /// Closes and reopens the port. Opening a port resets the board.
-    fn open_again(&mut self) -> io::Result<()> {
+    /// Closes and reopens the port, which resets the board.
+    fn reopen(&mut self) -> io::Result<()> {
         self.port = None;
         sleep(RESET_TIME);
         let result = port::open(&self.name).map_err(|error| match error {
@@ -79,7 +79,7 @@ impl SerialBoard {
             // The pseudo terminal of a simulated board has no reset lines, but opening it resets that board. A port
             // that has vanished fails here as well, and again when the bit rate is set.
             Err(_) if was_just_opened => {}
-            Err(_) => self.open_again()?,
+            Err(_) => self.reopen()?,
         }
         self.set_baud(baud)
     }
@@ -97,7 +97,7 @@ impl SerialBoard {
     }
 }
 
-/// Its reads block, so its futures are ready when they are first polled.
+/// The reads block, so the futures are ready when they are first polled.
 impl Board for SerialBoard {
     async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
         self.reset_at(baud).map_err(to_board_error)

@@ -20,7 +20,7 @@ const FOOT_RADIUS_MM: f64 = 6.5;
 /// Width of the plate's drawn edge, mm.
 const RIM_WIDTH_MM: f64 = 0.6;
 
-/// The page onto which the robot is drawn, with the robot's place on it.
+/// The page onto which the robot is drawn, and the robot's position on the page.
 pub struct Sheet<Projection> {
     /// The projection from the chassis frame, mm, to the page, pixels.
     pub project: Projection,
@@ -59,12 +59,12 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     /// mm.
     fn draw_rectangle(
         &self,
-        middle: Vector,
+        centre: Vector,
         half_size: Vector,
         corner_radius: f64,
         fill: &str,
     ) -> Group {
-        let (x, y) = (self.project)(middle);
+        let (x, y) = (self.project)(centre);
         let [half_width, half_height] =
             [half_size.x, half_size.y].map(|half| half * self.pixels_per_mm);
         let shape = rectangle(
@@ -94,19 +94,19 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         legs: &[LegPlace; 4],
         foot_colours: [&str; 4],
     ) -> Group {
-        for (i, leg) in legs.iter().enumerate() {
+        for (servo, leg) in legs.iter().enumerate() {
             let [driven_joint, idle_joint] = leg.joints;
             group = group
                 .add(self.draw_bar(idle_joint, leg.foot, LEAF_COLOUR, 2.2))
-                .add(self.draw_disc(leg.foot, FOOT_RADIUS_MM, foot_colours[i]))
-                .add(self.draw_bar(driven_joint, idle_joint, SERVO_COLOURS[i], 4.2));
+                .add(self.draw_disc(leg.foot, FOOT_RADIUS_MM, foot_colours[servo]))
+                .add(self.draw_bar(driven_joint, idle_joint, SERVO_COLOURS[servo], 4.2));
         }
         group
     }
 
     /// Adds the plate and the servos in it to `group`.
     pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
-        let middle = Vector::default();
+        let centre = Vector::default();
         let half_size_with_margin = |margin: f64| plate.half_size + Vector::new(margin, margin);
         for (margin, colour) in [(RIM_WIDTH_MM, EDGE_COLOUR), (0.0, PLATE_COLOUR)] {
             for [from, to] in plate.arms.as_flattened() {
@@ -118,7 +118,7 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
                 ));
             }
             group = group.add(self.draw_rectangle(
-                middle,
+                centre,
                 half_size_with_margin(margin),
                 plate.corner_radius + margin,
                 colour,
@@ -138,19 +138,19 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         shafts: [Vector; 4],
         legs: &[LegPlace; 4],
     ) -> Group {
-        for (i, leg) in legs.iter().enumerate() {
+        for (servo, leg) in legs.iter().enumerate() {
             let [servo_arm_tip, crank_joint] = leg.strut_anchors;
-            group = group.add(self.draw_bar(leg.pivots[0], crank_joint, SERVO_COLOURS[i], 3.2));
+            group = group.add(self.draw_bar(leg.pivots[0], crank_joint, SERVO_COLOURS[servo], 3.2));
             for (pivot, joint) in leg.pivots.into_iter().zip(leg.joints) {
                 group = group
-                    .add(self.draw_bar(pivot, joint, SERVO_COLOURS[i], 3.2))
+                    .add(self.draw_bar(pivot, joint, SERVO_COLOURS[servo], 3.2))
                     .add(self.draw_joint(pivot, 1.7))
                     .add(self.draw_joint(joint, 1.7));
             }
             group = group
                 .add(self.draw_bar(servo_arm_tip, crank_joint, STRUT_COLOUR, 1.6))
                 .add(self.draw_joint(crank_joint, 1.2))
-                .add(self.draw_bar(shafts[i], servo_arm_tip, SERVO_COLOURS[i], 3.0));
+                .add(self.draw_bar(shafts[servo], servo_arm_tip, SERVO_COLOURS[servo], 3.0));
         }
         group
     }

@@ -11,19 +11,20 @@ use crate::shared::ink::{
     round_hundredths, svg_page, text, text_end, text_middle, text_start,
 };
 
+/// Width and height of the page, pixels.
 const PAGE_SIZE: (f64, f64) = (700.0, 640.0);
 
-/// The centre of the robot on the page.
+/// The centre of the robot on the page, pixels.
 const ROBOT_CENTRE: (f64, f64) = (196.0, 320.0);
-/// The size of the robot's area on the page.
+/// Width and height of the robot's area on the page, pixels.
 const ROBOT_AREA_SIZE: (f64, f64) = (250.0, 476.0);
 
-/// Teeth of an SG-90's spline.
+/// Number of teeth of an SG-90's spline.
 const TOOTH_COUNT: usize = 25;
-/// Angle from a tooth to the next, deg.
+/// Angle from one tooth to the next, deg.
 const TOOTH_PITCH_DEG: f64 = 360.0 / TOOTH_COUNT as f64;
 
-/// The centre of the enlarged spline.
+/// The centre of the enlarged spline on the page, pixels.
 const SPLINE_CENTRE: (f64, f64) = (558.0, 158.0);
 /// Radii of the enlarged spline between the teeth and at their tips, pixels.
 const SPLINE_RADII: (f64, f64) = (52.0, 62.0);
@@ -85,22 +86,22 @@ fn point_toward(from: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
 }
 
 /// Draws an arc of a circle; angles count counter-clockwise.
-fn draw_arc(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Polyline {
+fn draw_arc(centre: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Polyline {
     const SEGMENT_COUNT: usize = 40;
     let points: Vec<(f64, f64)> = (0..=SEGMENT_COUNT)
         .map(|index| {
             let fraction = index as f64 / SEGMENT_COUNT as f64;
-            point_toward(middle, from_deg + (to_deg - from_deg) * fraction, radius)
+            point_toward(centre, from_deg + (to_deg - from_deg) * fraction, radius)
         })
         .collect();
     curve(&points, colour, 1.6)
 }
 
 /// Draws an arc with an arrowhead at its end.
-fn draw_arrow(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Group {
+fn draw_arrow(centre: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Group {
     const BARB_LENGTH: f64 = 8.0;
-    let tip = point_toward(middle, to_deg, radius);
-    // The direction back along the arc at its end; the barbs lie to both sides of it.
+    let tip = point_toward(centre, to_deg, radius);
+    // The direction back along the arc at its end; the barbs lie on both sides of it.
     let back_deg = if to_deg > from_deg {
         to_deg - 90.0
     } else {
@@ -108,7 +109,7 @@ fn draw_arrow(middle: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colou
     };
     let barb_end = |lean_deg: f64| point_toward(tip, back_deg + lean_deg, BARB_LENGTH);
     Group::new()
-        .add(draw_arc(middle, radius, from_deg, to_deg, colour))
+        .add(draw_arc(centre, radius, from_deg, to_deg, colour))
         .add(curve(&[barb_end(28.0), tip, barb_end(-28.0)], colour, 1.6))
 }
 
@@ -129,7 +130,7 @@ fn draw_chassis(robot: &Robot) -> Group {
         1.5,
     ));
     for (servo, (shaft, _)) in crank_ends.into_iter().enumerate() {
-        // The longer part of a servo's case lies on the side of the shaft that faces the middle of the robot.
+        // The longer part of a servo's case lies on the side of the shaft that faces the centre of the robot.
         let upper_y = if shaft.y > 0.0 {
             shaft.y + SHAFT_TO_CASE_END_MM
         } else {
@@ -337,22 +338,22 @@ fn draw_tooth_mark(degrees: f64) -> Group {
 
 /// Draws a compass rose that shows the zero direction and the positive sense of angles.
 fn draw_compass_rose() -> Group {
-    let middle = (546.0, 540.0);
-    let caption = (middle.0, middle.1 - 84.0);
+    let centre = (546.0, 540.0);
+    let caption = (centre.0, centre.1 - 84.0);
     let mut group = Group::new()
         .add(text_middle("angles, seen from above", caption, 14.0))
-        .add(outlined(circle(middle, 46.0, "none"), GREY, 1.2))
-        .add(draw_arrow(middle, 30.0, 0.0, 70.0, DARK));
+        .add(outlined(circle(centre, 46.0, "none"), GREY, 1.2))
+        .add(draw_arrow(centre, 30.0, 0.0, 70.0, DARK));
     for (degrees, label, anchor, offset) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),
         (90.0, "90° head", Anchor::Middle, (0.0, -8.0)),
         (180.0, "180°", Anchor::End, (-8.0, 5.0)),
         (270.0, "270°", Anchor::Middle, (0.0, 19.0)),
     ] {
-        let end = point_toward(middle, degrees, 52.0);
+        let end = point_toward(centre, degrees, 52.0);
         let point = (end.0 + offset.0, end.1 + offset.1);
         group = group
-            .add(line(middle, end, GREY, 1.2))
+            .add(line(centre, end, GREY, 1.2))
             .add(text(label, point, 14.0, DARK, anchor));
     }
     group

@@ -130,8 +130,8 @@ fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
             2.0,
         ));
     }
-    let middle = ((start.0 + end.0) / 2.0, end.1 - 12.0);
+    let label_point = ((start.0 + end.0) / 2.0, end.1 - 12.0);
     group
         .add(line(start, end, DARK, 2.0))
-        .add(text_middle("50 mm", middle, 16.0))
+        .add(text_middle("50 mm", label_point, 16.0))
 }

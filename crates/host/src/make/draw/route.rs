@@ -6,7 +6,7 @@
 /// A path on the page, with only horizontal and vertical parts.
 pub type Path = Vec<(f64, f64)>;
 
-/// Pixels between parallel wires.
+/// Distance between parallel wires, pixels.
 pub const WIRE_SPACING: f64 = 13.0;
 
 /// The paths of wires from the points of a row to those of a row below; both rows are ordered from left to right. The
@@ -15,14 +15,14 @@ pub fn paths_between_rows(from: &[(f64, f64)], to: &[(f64, f64)], first_turn_y: 
     let leads_right = |wire: usize| to[wire].0 > from[wire].0;
     (0..from.len())
         .map(|wire| {
-            let wires_ahead = if leads_right(wire) {
+            let ahead_count = if leads_right(wire) {
                 (wire + 1..from.len())
-                    .filter(|other| leads_right(*other))
+                    .filter(|ahead| leads_right(*ahead))
                     .count()
             } else {
-                (0..wire).filter(|other| !leads_right(*other)).count()
+                (0..wire).filter(|ahead| !leads_right(*ahead)).count()
             };
-            let turn_y = first_turn_y + WIRE_SPACING * wires_ahead as f64;
+            let turn_y = first_turn_y + WIRE_SPACING * ahead_count as f64;
             vec![
                 from[wire],
                 (from[wire].0, turn_y),

@@ -7,6 +7,7 @@ use svg::node::element::{Group, Path};
 use super::body::Sheet;
 use crate::shared::ink::{DARK, SERVO_COLOURS, circle, outlined, svg_page};
 
+/// Width and height of the page, pixels.
 pub(super) const PAGE_SIZE: (f64, f64) = (1000.0, 1110.0);
 /// Largest scale of the drawing. The scale is smaller if the robot is too large for the page.
 const MAX_PIXELS_PER_MM: f64 = 3.1;
@@ -93,7 +94,7 @@ impl<'a> View<'a> {
 
     fn sheet(&self) -> Sheet<impl Fn(Point) -> (f64, f64)> {
         Sheet {
-            project: |joint| self.page_point(joint),
+            project: |point| self.page_point(point),
             pixels_per_mm: self.pixels_per_mm,
             turn_deg: 0.0,
         }
@@ -192,7 +193,7 @@ impl<'a> View<'a> {
         group.add(outline).add(draw_eye(-9.0)).add(draw_eye(9.0))
     }
 
-    /// Draws the slider of a side, a prismatic joint between the arms of the front and the rear servo.
+    /// Draws the slider of a side, a prismatic joint between the arms of the front and the rear servos.
     fn draw_slider(&self, mut group: Group, side: Side) -> Group {
         let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
@@ -253,7 +254,7 @@ impl<'a> View<'a> {
     /// The positions of the legs' points at this pose, if no leg lags behind its servo.
     pub(super) fn legs(&self) -> [LegPlace; 4] {
         let angles = self.angles();
-        std::array::from_fn(|i| self.robot.legs()[i].place_at(angles[i], angles[i]))
+        std::array::from_fn(|leg| self.robot.legs()[leg].place_at(angles[leg], angles[leg]))
     }
 }
 

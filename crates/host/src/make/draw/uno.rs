@@ -37,7 +37,7 @@ const A0_X: f64 = 20.0;
 /// An Arduino UNO at a position on a page.
 #[derive(Clone, Copy, Debug)]
 pub struct Uno {
-    /// The board's upper left corner.
+    /// The board's upper left corner on the page, pixels.
     pub upper_left_corner: (f64, f64),
 }
 
@@ -162,7 +162,7 @@ impl Uno {
 }
 
 /// Draws a hole of a header.
-fn draw_hole(middle: (f64, f64), is_used: bool) -> svg::node::element::Circle {
+fn draw_hole(centre: (f64, f64), is_used: bool) -> svg::node::element::Circle {
     let fill = if is_used { DARK } else { PANEL_COLOUR };
-    outlined(circle(middle, 4.0, fill), DARK, 1.2)
+    outlined(circle(centre, 4.0, fill), DARK, 1.2)
 }

@@ -1,4 +1,4 @@
-//! The format of a model's file, chosen by the ending of the file's name.
+//! The format of a model's file, chosen by the file extension.
 
 use std::path::Path;
 
@@ -16,16 +16,16 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// The format of a file, by the ending of its name. A file without an ending, such as /dev/stdout, gets MuJoCo's
+    /// The format that a file's extension stands for. A file without an extension, such as /dev/stdout, gets MuJoCo's
     /// format, the only one that has everything in one file.
     ///
     /// # Errors
-    /// Fails for any other ending.
-    pub fn of(path: &Path) -> Result<Self, Failure> {
-        let ending = path
+    /// Fails for any other extension.
+    pub fn from_path(path: &Path) -> Result<Self, Failure> {
+        let extension = path
             .extension()
-            .map(|end| end.to_string_lossy().to_lowercase());
-        match ending.as_deref() {
+            .map(|extension| extension.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
             None | Some("xml" | "mjcf") => Ok(Self::Mjcf),
             Some("urdf") => Ok(Self::Urdf),
             Some("sdf") => Ok(Self::Sdf),
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ending_decides_the_format() {
+    fn the_file_extension_decides_the_format() {
         for (path, format) in [
             ("out/a.xml", Format::Mjcf),
             ("/dev/stdout", Format::Mjcf),
@@ -50,9 +50,14 @@ mod tests {
             ("a.xml.URDF", Format::Urdf),
             ("a.sdf", Format::Sdf),
         ] {
-            assert_eq!(Format::of(Path::new(path)).expect(path), format, "{path}");
+            assert_eq!(
+                Format::from_path(Path::new(path)).expect(path),
+                format,
+                "{path}"
+            );
         }
-        let refusal = Format::of(Path::new("out/a.urfd")).expect_err("the ending is misspelt");
+        let refusal = Format::from_path(Path::new("out/a.urfd"))
+            .expect_err("an unknown extension must be refused");
         assert!(refusal.to_string().starts_with("out/a.urfd: "), "{refusal}");
     }
 }

@@ -109,11 +109,11 @@ mod tests {
     #[test]
     fn length_errors_are_in_servo_order_and_a_foot_given_twice_is_refused() {
         let long_foot = |leg, mm| LongFoot { leg, error_mm: mm };
-        let errors =
-            length_errors(&[long_foot(3, 0.5), long_foot(1, -1.0)]).expect("the two feet differ");
+        let errors = length_errors(&[long_foot(3, 0.5), long_foot(1, -1.0)])
+            .expect("each foot is given once");
         assert_eq!(errors, [0.0, -1.0, 0.0, 0.5]);
         let refusal = length_errors(&[long_foot(0, 0.0), long_foot(0, 1.0)])
-            .expect_err("the foot is given twice");
+            .expect_err("a foot that is given twice must be refused");
         assert_eq!(refusal.to_string(), "--long-foot LF is given twice");
     }
 }

@@ -63,7 +63,7 @@ pub struct Args {
 /// Fails for an invalid robot.toml, a robot that cannot be built, an unknown file extension or gait, a firmware that
 /// is missing or has another robot, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let format = Format::of(&args.file)?;
+    let format = Format::from_path(&args.file)?;
     check_options(&args, format)?;
     let robot = args.robot.load()?;
     let assembly = Assembly::new(&robot);

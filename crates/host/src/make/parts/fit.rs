@@ -115,18 +115,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let assembly = Assembly::new(&robot);
     assembly.check_dimensions()?;
     let questions = Questions::new(&assembly, |_, _| true);
-    let count = questions.count();
+    let question_count = questions.count();
     if let Some(part) = args.spread.part() {
-        let bar = progress_bar(part.piece_count(count), BAR_TEMPLATE);
+        let bar = progress_bar(part.piece_count(question_count), BAR_TEMPLATE);
         let answer_one = |index| {
             bar.inc(1);
             questions.answer_one(index)
         };
-        part.print(&args, &args.spread.robot, count, answer_one)?;
+        part.print(&args, &args.spread.robot, question_count, answer_one)?;
         bar.finish_and_clear();
         return Ok(());
     }
-    let proof = complete_proof(&questions, args.spread.read_merged(count)?);
+    let proof = complete_proof(&questions, args.spread.read_merged(question_count)?);
     let verdict = proof.judge();
     let mut out = io::stdout().lock();
     if args.json {

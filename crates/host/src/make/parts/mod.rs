@@ -138,7 +138,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// The note that robot.toml has another mass or mass centre than the parts.
+/// The note that robot.toml gives a mass or a mass centre that differs from that of the parts.
 fn weight_note(bill: &Bill, robot: &Robot) -> String {
     let Body {
         mass,

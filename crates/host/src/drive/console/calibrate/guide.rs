@@ -219,10 +219,10 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         )
     }
 
-    /// Moves the first (0) or the second (1) limit of a servo's travel by this many degrees.
-    fn change_limit(&mut self, servo: usize, which: usize, degrees: f64) -> Result<()> {
+    /// Moves the first (`index` 0) or the second (1) limit of a servo's travel by this many degrees.
+    fn change_limit(&mut self, servo: usize, index: usize, degrees: f64) -> Result<()> {
         let mut limits = self.robot.calibration().servos[servo].limit;
-        limits[which] += degrees;
+        limits[index] += degrees;
         block_on(self.robot.limit(servo, limits))
     }
 

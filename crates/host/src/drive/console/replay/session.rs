@@ -10,8 +10,8 @@ use crate::simulate::sim::spans::{self, Span};
 use lizard_robot::Status;
 
 /// Length of a frame, ms.
-const FRAME_MS: u64 = 20;
-/// Longest gap between two reported poses, in frames, that is filled with the earlier one.
+pub(super) const FRAME_MS: u64 = 20;
+/// Longest gap between two reported poses, in frames, that is filled with the earlier pose.
 const MAX_HELD_FRAMES: usize = 50;
 /// Largest difference, in frames, between the robot's frame count and this machine's clock. A line may arrive late,
 /// and a simulated robot lags behind on a slow machine.
@@ -209,7 +209,7 @@ mod tests {
 
     fn session_of(lines: &[String]) -> Session {
         let text = format!("{BEGIN}{}\n", lines.join("\n"));
-        Session::parse(&text).expect("it is a session")
+        Session::parse(&text).expect("the session is valid")
     }
 
     fn pose_line(ms: u64, frame: u64, a1: f64) -> String {
@@ -222,7 +222,7 @@ mod tests {
     fn control_characters_of_a_session_do_not_reach_the_terminal() {
         let text = BEGIN.replace("\"p\"", "\"p\\u001b[2J\"")
             + "{\"ms\":1,\"note\":\"# x\\u001b]0;y\\u0007\"}\n{\"ms\":2,\"sent\":\"\\u009b1m\"}\n";
-        let session = Session::parse(&text).expect("it is a session");
+        let session = Session::parse(&text).expect("the session is valid");
         let events: Vec<&Event> = session.entries.iter().map(|entry| &entry.event).collect();
         assert!(
             matches!(events[0], Event::Begin { port, .. } if port == "p\\u{1b}[2J"),
@@ -245,12 +245,12 @@ mod tests {
         assert_eq!(
             a1_widths,
             [0, 0, 0, 0, 0, 24_000, 24_160, 24_160, 24_320, 0],
-            "10 us for a degree, 16 cycles for a us"
+            "10 us per degree, 16 cycles per us"
         );
     }
 
     #[test]
-    fn a_robot_that_falls_behind_the_clock_has_no_gap() {
+    fn a_robot_that_falls_behind_the_clock_leaves_no_gap() {
         let slow_poses = (0..100).map(|n| pose_line(20 + 30 * n, n, 138.590378));
         let log = session_of(&slow_poses.collect::<Vec<_>>()).frame_log(&built_in_robot("paper"));
         let first = log.widths.iter().position(|widths| widths[0] > 0);
@@ -270,7 +270,7 @@ mod tests {
             // The robot was reset, so its frame count starts again.
             pose_line(160, 0, 138.590378),
             pose_line(180, 1, 138.590378),
-            // No robot counts so many frames.
+            // No robot counts that many frames.
             pose_line(190, u64::MAX, 138.590378),
         ]);
         let log = session.frame_log(&built_in_robot("paper"));
@@ -299,7 +299,7 @@ mod tests {
     fn an_invalid_session_is_refused_with_the_line_number() {
         let message_of = |text: &str| {
             Session::parse(text)
-                .expect_err("the session is invalid")
+                .expect_err("an invalid session must be refused")
                 .to_string()
         };
         for text in ["", "{}\n", "walk\n", "{\"ms\":0,\"sent\":\"walk\"}\n"] {

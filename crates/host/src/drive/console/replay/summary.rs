@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::super::link::BANNER_START;
 use super::super::recorder::Event;
-use super::session::Session;
+use super::session::{FRAME_MS, Session};
 use lizard_robot::Status;
 
 /// Prints the session's length, commands, smallest margin, supply voltages and problems.
@@ -24,7 +24,7 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "firmware    {}", banner.trim_start_matches("# "))?;
     }
     let seconds = session.end_ms() as f64 / 1000.0;
-    let frame_count = session.end_ms() / 20 + 1;
+    let frame_count = session.end_ms() / FRAME_MS + 1;
     let pose_count = count_events(|event| matches!(event, Event::Pose { .. }));
     writeln!(
         out,
@@ -73,28 +73,28 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
             last.late_edges, last.lost_bytes
         )?;
     }
-    let mut trouble_count = 0;
+    let mut problem_count = 0;
     for entry in entries {
         let text = match &entry.event {
-            Event::Note(line) if reports_trouble(line) => line.trim_start_matches("# "),
+            Event::Note(line) if reports_problem(line) => line.trim_start_matches("# "),
             Event::Gone => "the port was gone",
             _ => continue,
         };
-        trouble_count += 1;
+        problem_count += 1;
         writeln!(
             out,
             "trouble     at {:.1} s: {text}",
             entry.ms as f64 / 1000.0
         )?;
     }
-    if trouble_count == 0 {
+    if problem_count == 0 {
         writeln!(out, "trouble     none")?;
     }
     Ok(())
 }
 
-/// True if a note reports a problem. A banner in the middle of a session means a reset.
-fn reports_trouble(note: &str) -> bool {
+/// True if a note reports a problem. A banner within a session means that the board was reset.
+fn reports_problem(note: &str) -> bool {
     ["# fault: ", "# supply: ", "# held ", BANNER_START]
         .iter()
         .any(|start| note.starts_with(start))
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_summary_shows_the_smallest_margin_the_supply_range_and_every_trouble() {
+    fn the_summary_shows_the_smallest_margin_the_supply_range_and_every_problem() {
         let status = |ms, margin| {
             format!(
                 "{{\"ms\":{ms},\"status\":\"ok gait=walk pose=1,2,3,4 margin={margin} late=1 \
@@ -139,11 +139,11 @@ mod tests {
             "{\"ms\":2000,\"gone\":null}".to_owned(),
         ]
         .join("\n");
-        let session = Session::parse(&(text + "\n")).expect("it is a session");
+        let session = Session::parse(&(text + "\n")).expect("the session is valid");
         let mut out = Vec::new();
-        print(&session, &mut out).expect("a vector takes it");
+        print(&session, &mut out).expect("writing to a vector succeeds");
         assert_eq!(
-            String::from_utf8(out).expect("it is text"),
+            String::from_utf8(out).expect("the output is UTF-8"),
             "board       p\n\
              firmware    lizard 0.2.0\n\
              time        2.0 s, the pose of 0 of 101 frames\n\

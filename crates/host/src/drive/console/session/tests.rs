@@ -61,7 +61,7 @@ fn after_a_reset_the_old_answer_is_not_awaited_and_watch_is_sent_again() {
     assert_eq!(
         session.next_line(now).as_deref(),
         Some("watch 1"),
-        "poses are asked for again"
+        "poses are requested again"
     );
 }
 
@@ -96,7 +96,7 @@ fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
 }
 
 #[test]
-fn stop_waits_for_no_answer_and_drops_waiting_lines() {
+fn stop_waits_for_no_answer_and_drops_queued_lines() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false);
     assert_eq!(session.next_line(now).as_deref(), Some("status"));
@@ -129,7 +129,7 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_are_ignored() {
     }
     let message = session
         .end_overdue_question(time)
-        .expect("the user is told");
+        .expect("the user gets a message");
     assert!(message.contains("may go on"), "{message}");
     assert_eq!(session.end_overdue_question(time), None, "only once");
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
@@ -167,7 +167,7 @@ fn a_robot_that_refuses_to_stop_since_it_has_no_pulses_is_not_asked_again() {
 }
 
 #[test]
-fn the_beginning_of_a_refusal_that_a_radio_has_cut_off_is_no_answer_to_stop() {
+fn a_refusal_that_a_radio_has_cut_off_does_not_answer_stop() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.stop(now);
@@ -178,7 +178,7 @@ fn the_beginning_of_a_refusal_that_a_radio_has_cut_off_is_no_answer_to_stop() {
 }
 
 #[test]
-fn a_late_answer_is_not_taken_for_that_of_the_next_line() {
+fn a_late_answer_is_not_mistaken_for_that_of_the_next_line() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.queue("trim 1 2");
@@ -255,8 +255,8 @@ fn run_session(
     let mut lines = Vec::new();
     for time_ms in (0..duration_ms).step_by(10) {
         if let Some(line) = session.next_line(start + Duration::from_millis(time_ms)) {
-            for printed in answer_to(&line).lines() {
-                session.receive(printed);
+            for answer_line in answer_to(&line).lines() {
+                session.receive(answer_line);
             }
             lines.push((time_ms, line));
         }
@@ -340,12 +340,12 @@ fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
 }
 
 #[test]
-fn the_deadman_that_an_earlier_program_left_is_not_restored_but_set_to_zero() {
+fn a_deadman_that_an_earlier_run_left_set_is_restored_as_zero() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_person();
     session.queue("arc left");
-    let answer_after_leaving = |line: &str| answer_of_robot(line).replace("700", "901");
-    run_session(&mut session, now, 1000, answer_after_leaving);
+    let answer_with_driving_deadman = |line: &str| answer_of_robot(line).replace("700", "901");
+    run_session(&mut session, now, 1000, answer_with_driving_deadman);
     assert_eq!(session.restore_deadman().as_deref(), Some("deadman 0"));
 }
 
@@ -361,7 +361,7 @@ fn a_script_sets_no_deadman() {
 }
 
 #[test]
-fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
+fn no_gait_starts_before_the_robot_has_confirmed_its_deadman() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false).with_person();
     session.queue("walk");
@@ -372,7 +372,7 @@ fn no_gait_begins_while_the_robot_has_not_confirmed_its_deadman() {
     let later = now + ANSWER_TIMEOUT;
     let message = session
         .end_overdue_question(later)
-        .expect("the user is told");
+        .expect("the user gets a message");
     assert!(message.contains("not sent"), "{message}");
     assert_eq!(session.next_line(later), None, "walk is not sent");
     assert!(
@@ -396,7 +396,7 @@ fn a_silent_robot_is_reported_once_until_it_answers_again() {
         now += STATUS_TIMEOUT;
         session.end_overdue_question(now)
     };
-    assert!(ask(false).is_some_and(|printed| printed.contains("does not answer")));
+    assert!(ask(false).is_some_and(|message| message.contains("does not answer")));
     assert_eq!(ask(false), None);
     assert_eq!(ask(true), None);
     assert!(ask(false).is_some());

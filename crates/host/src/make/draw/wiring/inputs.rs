@@ -18,7 +18,7 @@ const PANEL_HEIGHT: f64 = 214.0;
 const BOARD_PINS_X: f64 = 120.0;
 /// x of the pins of the button and of the obstacle switch, pixels.
 const COMPONENT_PINS_X: f64 = 400.0;
-/// Pixels from a row to the next one.
+/// Distance between neighbouring rows, pixels.
 const ROW_HEIGHT: f64 = 26.0;
 /// Distance of the button's first row from the panel's top, pixels.
 const BUTTON_ROW_Y: f64 = 58.0;
@@ -87,7 +87,7 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
         "#e6eef7",
     )
     .set("rx", 5);
-    let middle = y + ROW_HEIGHT / 2.0;
+    let middle_y = y + ROW_HEIGHT / 2.0;
     let group = group
         .add(outlined(case, DARK, 1.5))
         .add(line(
@@ -103,7 +103,7 @@ fn draw_button(group: Group, pin: u8, y: f64) -> Group {
             THIN_WIDTH,
         ))
         .add(outlined(
-            circle((COMPONENT_PINS_X + 20.0, middle), 8.0, "white"),
+            circle((COMPONENT_PINS_X + 20.0, middle_y), 8.0, "white"),
             DARK,
             1.5,
         ));

@@ -43,8 +43,8 @@ const GROUND_WIRE_X: f64 = 622.0;
 const UNO: Uno = Uno {
     upper_left_corner: (120.0, 776.0),
 };
-/// The middle of the board's round power socket, relative to its corner.
-const POWER_SOCKET_OFFSET: (f64, f64) = (-11.0, 252.0);
+/// The centre of the board's barrel jack, relative to the board's upper left corner.
+const BARREL_JACK_OFFSET: (f64, f64) = (-11.0, 252.0);
 /// Distance between neighbouring lines of the remarks.
 const LINE_HEIGHT: f64 = 19.0;
 
@@ -52,20 +52,20 @@ const LINE_HEIGHT: f64 = 19.0;
 pub fn draw_wiring(robot: &Robot) -> String {
     let pins = robot.servos().map(|servo| servo.pin);
     let order = servos_left_to_right(pins);
-    let around_count = order
+    let analogue_count = order
         .iter()
         .filter(|servo| is_analogue(pins[**servo]))
         .count();
     let mut used_pins = pins.to_vec();
     used_pins.extend(robot.firmware().rail_pin());
     used_pins.extend(robot.inputs().named_pins().map(|(_, pin)| pin));
-    let notes_y = UNO.lower_right_corner().1 + WIRE_SPACING * around_count as f64 + 50.0;
-    let socket = (
-        UNO.upper_left_corner.0 + POWER_SOCKET_OFFSET.0,
-        UNO.upper_left_corner.1 + POWER_SOCKET_OFFSET.1,
+    let remarks_y = UNO.lower_right_corner().1 + WIRE_SPACING * analogue_count as f64 + 50.0;
+    let barrel_jack = (
+        UNO.upper_left_corner.0 + BARREL_JACK_OFFSET.0,
+        UNO.upper_left_corner.1 + BARREL_JACK_OFFSET.1,
     );
     let mut group = Group::new();
-    let mut wires = supply::wires(socket);
+    let mut wires = supply::wires(barrel_jack);
     wires.extend(strips::link_wires());
     wires.extend(strips::resistor_wires(
         order.map(|servo| SERVO_NAMES[servo]),
@@ -75,21 +75,21 @@ pub fn draw_wiring(robot: &Robot) -> String {
         group = group.add(wire.draw());
     }
     group = group
-        .add(supply::draw(socket))
+        .add(supply::draw(barrel_jack))
         .add(strips::draw())
         .add(strips::draw_resistor_bodies())
         .add(UNO.draw(&used_pins));
     for (index, servo) in order.into_iter().enumerate() {
         group = group.add(draw_servo(servo, index, pins[servo]));
     }
-    let lines = remarks(robot);
-    let option_y = notes_y + LINE_HEIGHT * lines.len() as f64 + 6.0;
-    for (index, remark) in lines.iter().enumerate() {
-        let y = notes_y + LINE_HEIGHT * index as f64;
+    let remarks = remarks(robot);
+    let radio_y = remarks_y + LINE_HEIGHT * remarks.len() as f64 + 6.0;
+    for (index, remark) in remarks.iter().enumerate() {
+        let y = remarks_y + LINE_HEIGHT * index as f64;
         group = group.add(text_start(remark, (16.0, y), 14.0));
     }
-    let inputs_y = option_y + radio::PANEL_HEIGHT;
-    group = group.add(draw_board_notes()).add(radio::draw(option_y));
+    let inputs_y = radio_y + radio::PANEL_HEIGHT;
+    group = group.add(draw_board_notes()).add(radio::draw(radio_y));
     if inputs::panel_height(robot) > 0.0 {
         group = group.add(inputs::draw(robot, inputs_y));
     }
@@ -180,7 +180,7 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let path = vec![from, (from.0, y), (to.0, y), to];
     let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN_WIDTH)];
     let strip_holes = [0, 1, 2, 3].map(strips::board_hole);
-    let mut around_count = 0;
+    let mut analogue_count = 0;
     let mut ends: Vec<Path> = Vec::new();
     let pin_points = order.map(|servo| {
         let pin = UNO.pin_point(pins[servo]);
@@ -188,9 +188,9 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
             ends.push(vec![]);
             return pin;
         }
-        ends.push(path_end(UNO.lower_right_corner(), around_count, pin));
-        around_count += 1;
-        turn_point(UNO.lower_right_corner(), around_count - 1)
+        ends.push(path_end(UNO.lower_right_corner(), analogue_count, pin));
+        analogue_count += 1;
+        turn_point(UNO.lower_right_corner(), analogue_count - 1)
     });
     let paths = paths_between_rows(&strip_holes, &pin_points, SIGNAL_WIRES_Y[1]);
     for ((servo, mut path), end) in order.into_iter().zip(paths).zip(ends) {
@@ -266,7 +266,7 @@ fn draw_board_notes() -> Group {
         .add(text_start("computer", (42.0, usb_y - 12.0), 13.0))
 }
 
-/// Remarks about facts that a drawing cannot show.
+/// The remarks below the drawing, about facts that a drawing cannot show.
 fn remarks(robot: &Robot) -> Vec<String> {
     let mut lines = vec![
         "Thick lines: wire of 0.5 mm\u{b2} (20 AWG), red or black. Thin lines: jumpers (26 AWG), a".to_string(),

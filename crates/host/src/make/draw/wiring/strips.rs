@@ -11,7 +11,7 @@ use crate::shared::ink::{
     DARK, ORANGE, RED, circle, line, outlined, rectangle, text_middle, text_start,
 };
 
-/// Pixels between neighbouring ways of the upright strips.
+/// Distance between neighbouring ways of the upright strips, pixels.
 const PITCH: f64 = 22.0;
 /// Width of a strip, pixels.
 const STRIP_WIDTH: f64 = 36.0;
@@ -130,7 +130,7 @@ pub fn link_wires() -> Vec<Wire> {
 pub fn resistor_wires(names: [&str; 4]) -> Vec<Wire> {
     let resistor_wire = |(index, name): (usize, &str)| {
         // The leads of the outer resistors run below those of the inner ones, so that they do not cross.
-        let (middle_offset, is_inner) = match index {
+        let (ground_offset, is_inner) = match index {
             0 => (-5.0, false),
             1 => (-11.0, true),
             2 => (11.0, true),
@@ -143,7 +143,7 @@ pub fn resistor_wires(names: [&str; 4]) -> Vec<Wire> {
         };
         let from = (signal_way_x(way_of_servo(index)) + offset, SIGNAL_EDGES_Y.1);
         let to = (
-            signal_way_x(SIGNAL_GROUND_WAY) + middle_offset,
+            signal_way_x(SIGNAL_GROUND_WAY) + ground_offset,
             SIGNAL_EDGES_Y.1,
         );
         let low_y = SIGNAL_EDGES_Y.1 + if is_inner { 17.0 } else { 35.0 };
@@ -171,13 +171,13 @@ pub fn draw_resistor_bodies() -> Group {
 
 /// Adds a way of a strip, its brass tube and its number, to `group`.
 fn draw_way(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
-    let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
+    let centre = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
     group
         .add(line(from, to, "#c9b26b", 7.0))
-        .add(circle(middle, 8.5, "white"))
+        .add(circle(centre, 8.5, "white"))
         .add(text_middle(
             &number.to_string(),
-            (middle.0, middle.1 + 4.5),
+            (centre.0, centre.1 + 4.5),
             12.0,
         ))
 }
@@ -189,8 +189,8 @@ fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectan
 /// Draws the three strips.
 pub fn draw() -> Group {
     let mut group = Group::new();
-    let draw_upright_strip = |ways: usize, left: f64, top: f64| {
-        let size = (STRIP_WIDTH, PITCH * ways as f64);
+    let draw_upright_strip = |way_count: usize, left: f64, top: f64| {
+        let size = (STRIP_WIDTH, PITCH * way_count as f64);
         draw_case((left, top - PITCH / 2.0), size)
     };
     group = group
@@ -205,8 +205,8 @@ pub fn draw() -> Group {
             FIRST_SUPPLY_HOLE.1,
         ));
     let upright_strips = [("ground", GROUND_WAY_COUNT), ("supply", SUPPLY_WAY_COUNT)];
-    for (name, ways) in upright_strips {
-        for way in 0..ways {
+    for (name, way_count) in upright_strips {
+        for way in 0..way_count {
             let (hole, link_offset) = match name {
                 "ground" => (ground_hole(way), STRIP_WIDTH),
                 _ => (supply_hole(way), -STRIP_WIDTH),

@@ -9,6 +9,7 @@ use super::wire::{BLACK, GREY_WIRE, LEG_WIDTH, THICK_WIDTH, THIN_WIDTH, Wire, dr
 use crate::make::draw::route::Path;
 use crate::shared::ink::{DARK, RED, line, outlined, rectangle, text_end, text_middle, text_start};
 
+/// A point on the page.
 type Point = (f64, f64);
 
 /// The battery's left edge.
@@ -62,10 +63,10 @@ fn ground_hole_of(part_name: &str) -> Point {
     ground_hole(entry.map_or(0, |(_, way)| *way))
 }
 
-/// All wires of the supply; `socket` is the middle of the board's barrel jack.
-pub fn wires(socket: Point) -> Vec<Wire> {
-    let [plug_plus, plug_minus] = barrel_plug_terminals(socket);
-    let segment = |a: Point, b: Point| vec![a, b];
+/// All wires of the supply; `barrel_jack` is the centre of the board's barrel jack.
+pub fn wires(barrel_jack: Point) -> Vec<Wire> {
+    let [plug_plus, plug_minus] = barrel_plug_terminals(barrel_jack);
+    let segment = |from: Point, to: Point| vec![from, to];
     let thick_wire = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK_WIDTH);
     let first_supply_hole = supply_hole(0);
     let battery_hole = ground_hole_of("battery");
@@ -210,8 +211,8 @@ fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
     ))
 }
 
-/// Draws all parts of the supply; `socket` is the middle of the board's barrel jack.
-pub fn draw(socket: Point) -> Group {
+/// Draws all parts of the supply; `barrel_jack` is the centre of the board's barrel jack.
+pub fn draw(barrel_jack: Point) -> Group {
     let mut group = draw_battery(Group::new());
     group = draw_alarm(group);
     group = draw_fuse_switch_and_way(group);
@@ -242,10 +243,10 @@ pub fn draw(socket: Point) -> Group {
     ] {
         group = group.add(text_start(label, point, 12.0));
     }
-    let [plus, minus] = barrel_plug_terminals(socket);
+    let [plus, minus] = barrel_plug_terminals(barrel_jack);
     draw_case(group, (plus.0, plus.1 - 8.0), (34.0, 34.0), "#8f8f8f")
         .add(rectangle(
-            (plus.0 + 34.0, socket.1 - 5.0),
+            (plus.0 + 34.0, barrel_jack.1 - 5.0),
             (10.0, 10.0),
             "#8f8f8f",
         ))
@@ -351,7 +352,7 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
         group = draw_case(group, (left, PLUS_Y - 13.0), (right - left, 26.0), fill);
     }
     let middle_of = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
-    let lever = [
+    let switch_lever = [
         (SWITCH_CONTACTS_X[0] + 16.0, PLUS_Y + 4.0),
         (SWITCH_CONTACTS_X[1] - 18.0, PLUS_Y - 8.0),
     ];
@@ -362,7 +363,7 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
             "#c9b26b",
             9.0,
         ))
-        .add(line(lever[0], lever[1], DARK, 2.5))
+        .add(line(switch_lever[0], switch_lever[1], DARK, 2.5))
         .add(text_middle(
             "fuse",
             (middle_of(FUSE_CONTACTS_X), 20.0),
@@ -398,10 +399,10 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
 
 fn draw_converter(group: Group) -> Group {
     let [left, right] = CONVERTER_EDGES_X;
-    let middle = (left + right) / 2.0;
+    let middle_x = (left + right) / 2.0;
     draw_case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
-        .add(text_middle("converter", (middle, 66.0), 14.0))
-        .add(text_middle("to 5.0 V, 3 A", (middle, 84.0), 14.0))
+        .add(text_middle("converter", (middle_x, 66.0), 14.0))
+        .add(text_middle("to 5.0 V, 3 A", (middle_x, 84.0), 14.0))
         .add(text_start("OUT+", (left + 8.0, PLUS_Y + 5.0), 12.0))
         .add(text_start(
             "OUT\u{2212}",

@@ -1,7 +1,7 @@
 //! A wire of the drawing, and the terminals that it connects.
 //!
-//! Wires have horizontal and vertical parts only. Each is drawn with a white edge, which leaves a gap in the wires
-//! drawn before it that it crosses. Without the gap a crossing would look like a joint.
+//! Wires have horizontal and vertical parts only. Each is drawn with a white edge, which leaves a gap in the
+//! earlier wires that it crosses. Without the gap a crossing would look like a joint.
 
 use svg::node::element::{Circle, Group};
 
@@ -17,10 +17,10 @@ pub const GREY_WIRE: &str = "#9a9a9a";
 pub const THICK_WIDTH: f64 = 4.5;
 /// Width of a thin jumper on the page, pixels.
 pub const THIN_WIDTH: f64 = 2.8;
-/// Width of a lead that belongs to a component or to the battery and is not bought as a wire, pixels.
+/// Width of a component's leg or of a wire that is part of the battery's balance plug, pixels.
 pub const LEG_WIDTH: f64 = 1.8;
 
-/// A wire or a leg by its name, path, colour and width.
+/// A wire or a component's leg: its name, path, colour and width.
 pub struct Wire {
     pub name: String,
     pub path: Path,

@@ -15,10 +15,10 @@ fn press_keys<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
 const CONFIRM_SIGN_KEYS: [Key; 2] = [Key::Act, Key::Yes];
 
 #[test]
-fn a_whole_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
+fn a_complete_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
     let mut link = connect_paper_robot();
     let [min, max] = calibration_of(&mut link).servos[0].limit;
-    let mut guide = Guide::new(&mut link).expect("it answers");
+    let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next]);
     press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
     assert!(
@@ -50,7 +50,7 @@ fn a_whole_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
     );
     assert!(guide.view().title.contains("scales and limits"));
     press_keys(&mut guide, &[Key::Next, Key::Back, Key::Next, Key::Act]);
-    guide.read_messages().expect("it answers");
+    guide.read_messages().expect("the robot answers");
     assert!(guide.view().instructions[1].starts_with("It walks"));
     press_keys(&mut guide, &[Key::Next]);
     assert!(
@@ -66,11 +66,14 @@ fn a_whole_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
     assert!(!press_keys(&mut guide, &[Key::Next]));
     assert!(guide.is_saved(), "{:?}", guide.view());
     press_keys(&mut guide, &[Key::Back]);
-    assert!(press_keys(&mut guide, &[Key::Leave]), "what is saved stays");
+    assert!(
+        press_keys(&mut guide, &[Key::Leave]),
+        "the guide is finished"
+    );
     let after_leaving = calibration_of(&mut link);
     assert_eq!(after_leaving.servos[0].trim, 0.9);
-    link.command("factory").expect("it is accepted");
-    link.command("load").expect("it was saved");
+    link.command("factory").expect("the line is accepted");
+    link.command("load").expect("the calibration was saved");
     let loaded = calibration_of(&mut link);
     assert_eq!(loaded.servos[0].trim, 0.9);
     assert_eq!(loaded.servos[1].trim, -0.5);
@@ -96,17 +99,17 @@ fn cancelling_early_or_late_restores_the_calibration_and_saves_nothing() {
         .collect();
     for length in [1, 4, 13, 19] {
         let mut link = connect_paper_robot();
-        link.command("trim 1 2.50").expect("it is accepted");
-        link.command("boot walk").expect("it is accepted");
+        link.command("trim 1 2.50").expect("the line is accepted");
+        link.command("boot walk").expect("the line is accepted");
         let before = calibration_of(&mut link);
-        let mut guide = Guide::new(&mut link).expect("it answers");
+        let mut guide = Guide::new(&mut link).expect("the robot answers");
         press_keys(&mut guide, &keys[..length]);
         assert!(press_keys(&mut guide, &[Key::Leave]), "after {length} keys");
         let after = calibration_of(&mut link);
         assert_eq!(after, before, "after {length} keys");
-        let status = link.ask("status").expect("it answers").answer;
+        let status = link.ask("status").expect("the robot answers").answer;
         assert!(status.starts_with("ok gait=stand"), "{status}");
-        let load = link.ask("load").expect("it answers").answer;
+        let load = link.ask("load").expect("the robot answers").answer;
         assert!(load.starts_with("err 9"), "nothing was saved: {load}");
     }
 }
@@ -114,8 +117,8 @@ fn cancelling_early_or_late_restores_the_calibration_and_saves_nothing() {
 #[test]
 fn reversing_a_sign_negates_the_trim_so_the_neutral_pulse_stays() {
     let mut link = connect_paper_robot();
-    link.command("trim 1 3").expect("it is accepted");
-    let mut guide = Guide::new(&mut link).expect("it answers");
+    link.command("trim 1 3").expect("the line is accepted");
+    let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
     assert_eq!(guide.robot.calibration().servos[0].trim, -3.0);
     let settings = calibration_of(&mut link);
@@ -126,15 +129,15 @@ fn reversing_a_sign_negates_the_trim_so_the_neutral_pulse_stays() {
 }
 
 #[test]
-fn the_space_bar_moves_one_servo_alone_and_an_earlier_answer_is_not_taken() {
+fn the_space_bar_moves_one_servo_alone_and_an_answer_before_that_is_rejected() {
     let mut link = connect_paper_robot();
-    let mut guide = Guide::new(&mut link).expect("it answers");
+    let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
     assert!(guide.view().message.contains("space bar first"));
     press_keys(&mut guide, &[Key::Next]);
-    assert!(guide.view().title.contains("A1"), "no step is left out");
+    assert!(guide.view().title.contains("A1"), "no step is skipped");
     press_keys(&mut guide, &[Key::Act]);
-    let status = link.ask("status").expect("it answers").answer;
+    let status = link.ask("status").expect("the robot answers").answer;
     assert!(
         status.contains("pose=148.59,41.41,318.59,221.41"),
         "{status}"
@@ -143,7 +146,7 @@ fn the_space_bar_moves_one_servo_alone_and_an_earlier_answer_is_not_taken() {
 
 #[test]
 fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
-    // The slowest that a robot may be, and the smallest turn of a key.
+    // The slowest valid robot, and the smallest turn per key press.
     let slow_robot = PAPER_TOML.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
     assert_ne!(slow_robot, PAPER_TOML);
     for (text, degrees) in [
@@ -159,14 +162,14 @@ fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
         let [a1, a2, a3, a4] = robot.servos().map(|servo| servo.neutral);
         let line = format!("pose {:.2} {a2:.2} {a3:.2} {a4:.2}", a1 + degrees);
         assert!(running.send_line(&line).starts_with("ok pose"), "{line}");
-        let unseen_frames = (0..100).take_while(|_| {
+        let unchanged_frames = (0..100).take_while(|_| {
             running.run_frames(1);
             running.status_value("pose") == before
         });
-        let unseen_frame_count = unseen_frames.count() as u64;
+        let unchanged_frame_count = unchanged_frames.count() as u64;
         assert!(
-            unseen_frame_count + 2 < STILL_FRAMES,
-            "{degrees} deg: {unseen_frame_count} frames show nothing"
+            unchanged_frame_count + 2 < STILL_FRAMES,
+            "{degrees} deg: {unchanged_frame_count} frames show no motion"
         );
     }
 }
@@ -174,7 +177,7 @@ fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
 #[test]
 fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
     let mut link = connect_paper_robot();
-    let mut guide = Guide::new(&mut link).expect("it answers");
+    let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Back, Key::Next, Key::Next]);
     for _ in 0..4 {
         press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
@@ -206,8 +209,8 @@ fn keys_to_scales() -> Vec<Key> {
 #[test]
 fn turning_a_crank_after_its_move_changes_its_scale_but_not_its_neutral_pulse() {
     let mut link = connect_paper_robot();
-    link.command("trim 1 2.00").expect("it is accepted");
-    let mut guide = Guide::new(&mut link).expect("it answers");
+    link.command("trim 1 2.00").expect("the line is accepted");
+    let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &keys_to_scales());
     assert!(
         guide
@@ -218,7 +221,7 @@ fn turning_a_crank_after_its_move_changes_its_scale_but_not_its_neutral_pulse() 
     press_keys(&mut guide, &[Key::LeftRight(0.5)]);
     assert!(guide.view().message.contains("space bar first"));
     press_keys(&mut guide, &[Key::Act]);
-    let moved_degrees = guide.moved_degrees.expect("it was moved");
+    let moved_degrees = guide.moved_degrees.expect("the servo has moved");
     assert!(moved_degrees.abs() >= 20.0, "{moved_degrees}");
     // Four corrections of half a degree each, of a turn by `moved_degrees`.
     press_keys(&mut guide, &[Key::LeftRight(0.5); 4]);
@@ -239,7 +242,7 @@ fn turning_a_crank_after_its_move_changes_its_scale_but_not_its_neutral_pulse() 
 fn each_limit_can_be_moved_but_not_into_the_travel_that_the_gaits_need() {
     let mut link = connect_paper_robot();
     let before = calibration_of(&mut link).servos[0];
-    let mut guide = Guide::new(&mut link).expect("it answers");
+    let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &keys_to_scales());
     press_keys(&mut guide, &[Key::Next; 4]);
     let title = guide.view().title;
