@@ -20,10 +20,10 @@ use crate::part::{Part, volume};
 use crate::price::Price;
 use loose::{INPUT_ITEMS, LOOSE_ITEMS, RADIO_ITEMS, Row};
 
-/// Mass per volume of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three lines of wall and a third of infill.
-/// The sum over all parts is within 10 % of PrusaSlicer's estimate.
+/// Density of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three perimeters and a third of infill. The sum over all
+/// parts is within 10 % of PrusaSlicer's estimate.
 const PRINTED_DENSITY: f64 = 1.0e-3;
-/// Mass per volume of a pad, which is nearly all wall, g/mm^3: TPU of 1.21 g/cm^3.
+/// Density of a pad, which is nearly all wall, g/mm^3: TPU of 1.21 g/cm^3.
 const PAD_DENSITY: f64 = 1.15e-3;
 /// Hours of printing for each piece, whatever its mass, in layers of 0.2 mm on an Ender 3. With the hours for
 /// each gram, the sum over all parts is within 10 % of PrusaSlicer's estimate.
@@ -36,9 +36,9 @@ const SERVO_GRAMS: f64 = 9.5;
 const HORN_GRAMS: f64 = 0.8;
 /// Mass of an Arduino UNO, g.
 const BOARD_GRAMS: f64 = 25.0;
-/// Mass per volume of a battery, g/mm^3.
+/// Density of a battery, g/mm^3.
 const BATTERY_DENSITY: f64 = 1.1e-3;
-/// Mass per volume of a spring's steel, g/mm^3.
+/// Density of a spring's steel, g/mm^3.
 const STEEL_DENSITY: f64 = 7.85e-3;
 /// Mass of a screw's shank, g per mm of length.
 const SCREW_GRAMS_PER_MM: f64 = 0.044;
@@ -76,7 +76,7 @@ pub struct Item {
 
 impl Item {
     fn printed(part: &Part) -> Self {
-        let density = if part.is_rubbery {
+        let density = if part.is_flexible {
             PAD_DENSITY
         } else {
             PRINTED_DENSITY
@@ -145,7 +145,7 @@ pub struct Bill {
 fn row_text_and_grams(
     body: &Body,
     assembly: &Assembly,
-    hold: Option<&SpringEffect>,
+    spring_effect: Option<&SpringEffect>,
 ) -> (String, f64) {
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
@@ -186,8 +186,8 @@ fn row_text_and_grams(
             );
             let coil_text =
                 format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
-            let pull_text = hold.map_or(String::new(), |hold| {
-                format!(", {:.1} N at {:.1} mm", hold.force, hold.installed)
+            let pull_text = spring_effect.map_or(String::new(), |effect| {
+                format!(", {:.1} N at {:.1} mm", effect.force, effect.installed)
             });
             (
                 format!("tension spring, {coil_text}{pull_text}"),
@@ -256,13 +256,13 @@ fn input_items(robot: &Robot) -> Vec<Item> {
 }
 
 impl Bill {
-    /// The bill of a robot, with its mass centre at `pose`.
+    /// The bill of a robot; its mass centre is that at `pose`.
     pub fn of(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
-        let hold = SpringEffect::of(assembly);
+        let spring_effect = SpringEffect::of(assembly);
         let mut bought_rows: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
-            let (text, body_mass) = row_text_and_grams(body, assembly, hold.as_ref());
+            let (text, body_mass) = row_text_and_grams(body, assembly, spring_effect.as_ref());
             if !text.is_empty() {
                 bought_rows
                     .entry(text)
@@ -278,8 +278,8 @@ impl Bill {
         }
         let items_of = |is_alternative: bool| -> Vec<Item> {
             let parts = parts.iter();
-            let parts_listed = parts.filter(|part| part.instead_of.is_some() == is_alternative);
-            parts_listed.map(Item::printed).collect()
+            let listed_parts = parts.filter(|part| part.instead_of.is_some() == is_alternative);
+            listed_parts.map(Item::printed).collect()
         };
         let bought = bought_rows.into_iter();
         let bought =
@@ -296,7 +296,7 @@ impl Bill {
             inputs: input_items(assembly.robot()),
             grams,
             centre: moment.map(|sum| sum / grams),
-            hold,
+            hold: spring_effect,
             battery_space: assembly.robot().parts().battery,
         }
     }
@@ -316,7 +316,7 @@ impl Bill {
             .sum()
     }
 
-    /// The number of bought things whose name begins with `name_start`.
+    /// The number of bought pieces whose name begins with `name_start`.
     pub fn bought_count(&self, name_start: &str) -> usize {
         let bought = self.bought.iter();
         let matching_items = bought.filter(|item| item.what.starts_with(name_start));
@@ -388,9 +388,9 @@ impl fmt::Display for Bill {
             "\nIn all about {grams:.0} g; the mass centre is {position_text} the middle of the plate, {height:.1} mm above its top.\n"
         )?;
         let drive = match &self.hold {
-            Some(hold) => {
-                write!(f, "{hold}")?;
-                let (force, rate) = (hold.force, hold.rate);
+            Some(effect) => {
+                write!(f, "{effect}")?;
+                let (force, rate) = (effect.force, effect.rate);
                 format!("kind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}")
             }
             None => {
@@ -443,12 +443,12 @@ pub fn places_table(battery: [f64; 3]) -> String {
     );
     for fitting in Fitting::ALL {
         let facts = fitting.facts();
-        let (name, place, hold) = (facts.name, facts.place, facts.fastening);
+        let (name, place, fastening) = (facts.name, facts.place, facts.fastening);
         let (room, examples) = (
             size_text(facts.size),
             list_text(&mut facts.examples.into_iter()),
         );
-        text += &format!("| {name} | {place} | {room} | {hold} | {examples} |\n");
+        text += &format!("| {name} | {place} | {room} | {fastening} | {examples} |\n");
     }
     text + SIZES_TEXT
 }

@@ -67,13 +67,15 @@ impl BuildProblem {
     #[must_use]
     pub fn colliding_pair(&self) -> Option<CollidingPair> {
         match self {
-            Self::Clash(Clash::Overlap(seen) | Clash::Narrow(seen)) => Some(CollidingPair {
-                first: seen.first.clone(),
-                second: seen.second.clone(),
-                mm: seen.mm,
-                pose: Some(seen.pose),
-            }),
-            Self::Clash(Clash::Unsure(pair)) => Some(CollidingPair {
+            Self::Clash(Clash::Overlap(clearance) | Clash::Narrow(clearance)) => {
+                Some(CollidingPair {
+                    first: clearance.first.clone(),
+                    second: clearance.second.clone(),
+                    mm: clearance.mm,
+                    pose: Some(clearance.pose),
+                })
+            }
+            Self::Clash(Clash::Unproved(pair)) => Some(CollidingPair {
                 first: pair.first.clone(),
                 second: pair.second.clone(),
                 mm: pair.proved,
@@ -100,8 +102,8 @@ const NUT_MESSAGE: &str = "the nut of a leg's anchor does not fit into its crank
                    raise parts.thickness or the servo's horn";
 
 impl Assembly {
-    /// Checks that the robot can be built: that its dimensions are consistent, that no two parts collide at any
-    /// pose that the guard accepts, and that every screw can be reached. The proof about collisions takes seconds.
+    /// Checks that the robot can be built: that its dimensions are consistent, that no two parts collide at any pose
+    /// that the guard accepts, and that every screw can be reached. The collision proof takes seconds.
     ///
     /// # Errors
     /// Returns the first dimension that does not fit, else the two parts that overlap most, else a screw that
@@ -241,7 +243,7 @@ impl Assembly {
 }
 
 /// The least distance in plan view between layers of two bodies at a height that they share, mm; negative if they
-/// overlap. A shape keeps clear of a layer beside its shapes or inside one of its holes.
+/// overlap. A shape is clear of a layer if it lies beside the layer's shapes or inside one of its holes.
 fn layer_clearance(a: &[Prism], b: &[Prism]) -> f64 {
     let gap_to_layer = |shape: &Shape, holes: &[Shape], gap_beside: f64| {
         let depths = holes

@@ -1,4 +1,4 @@
-//! Serializers that round numbers to the decimals that are known: `UNIT` is 10 for tenths, 1000 for thousandths.
+//! Serializers that round numbers to their known decimals: `UNIT` is 10 for tenths, 1000 for thousandths.
 
 use serde::{Serialize, Serializer};
 

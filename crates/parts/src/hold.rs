@@ -20,8 +20,8 @@ pub struct SpringEffect {
     /// Rate of the spring, N/mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub rate: f64,
-    /// Lever of the strut about the leg's pivot, mm: the least and the greatest of any leg in any gait. It varies
-    /// since the pull is perpendicular to the anchor's arm at one pose only.
+    /// Lever arm of the strut's pull about the leg's pivot, mm: the least and the greatest of any leg in any gait. It
+    /// varies, since the pull is perpendicular to the anchor's arm at one pose only.
     #[serde(serialize_with = "decimals::each::<1000, _>")]
     pub lever: [f64; 2],
     /// Torque up to which the leg follows its servo exactly in all gaits, N mm.
@@ -52,7 +52,7 @@ impl SpringEffect {
     pub fn of(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
         let strut = robot.drive().strut()?;
-        // The least and the greatest lever, lag and torque.
+        // The least and the greatest lever arm, lag and torque.
         let mut ranges = [[f64::INFINITY, 0.0]; 3];
         for gait in robot.gaits() {
             for (_, phase) in gait.frames() {
@@ -66,14 +66,14 @@ impl SpringEffect {
                 }
             }
         }
-        let [lever, lag_range, torque_range] = ranges;
+        let [lever_arm_range, lag_range, torque_range] = ranges;
         let ground = robot.ground();
         Some(Self {
             installed: robot.mounted_spring_length(),
             force: strut.force,
             rate: strut.rate,
-            lever,
-            preload: strut.force * lever[0],
+            lever: lever_arm_range,
+            preload: strut.force * lever_arm_range[0],
             way: lag_range,
             end: torque_range,
             friction: ground.mean_pad_friction() * ground.feet.reach,

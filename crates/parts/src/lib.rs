@@ -1,15 +1,14 @@
-//! Solid model of the robot: bodies with layers and places, made from robot.toml.
+//! The solid model of the robot: bodies with layers and places, made from robot.toml.
 //!
-//! The mechanism is flat and all its joints are upright, so a part is a stack of layers,
-//! each a flat shape between two heights, and one table has the heights of the whole
-//! robot ([`Stack`]). A pose turns and shifts each body in the plane; nothing moves up or
-//! down.
+//! The mechanism is flat and all its joint axes are vertical, so a part is a stack of layers, each a flat shape between
+//! two heights, and one table has the heights of the whole robot ([`Stack`]). A pose turns and shifts each body in the
+//! plane; nothing moves up or down.
 //!
 //! # Example
 //! ```
 //! let robot = lizard_robot::Robot::parse(include_str!("../../../robots/paper.toml"))?;
 //! let assembly = lizard_parts::Assembly::new(&robot);
-//! let pose = robot.lizard().solve(&robot.neutral_pose()).expect("it closes");
+//! let pose = robot.lizard().solve(&robot.neutral_pose()).expect("the linkages close at neutral");
 //! for body in assembly.bodies() {
 //!     let place = assembly.place(body.mount, &pose);
 //!     for prism in &body.prisms {

@@ -27,8 +27,8 @@ pub struct Part {
     pub prisms: Vec<Prism>,
     /// True if the part is turned over for printing.
     pub is_turned_over: bool,
-    /// True if the part is printed in a rubbery filament, TPU.
-    pub is_rubbery: bool,
+    /// True if the part is printed in a flexible filament, TPU.
+    pub is_flexible: bool,
     /// The part that it may replace; `None` for a standard part of the robot.
     pub instead_of: Option<String>,
     /// The digits engraved in the part: the numbers of its servos, such as `13` for A1 and A3. Empty if only one part
@@ -44,7 +44,7 @@ impl Part {
             body_names: vec![name.to_owned()],
             prisms,
             is_turned_over: false,
-            is_rubbery: false,
+            is_flexible: false,
             instead_of: None,
             mark: String::new(),
         }
@@ -60,8 +60,8 @@ impl Part {
         self.name.replace(' ', "-")
     }
 
-    /// The layers as printed, with the mark and with closed holes where a hole would begin in mid-air; and the number
-    /// of closed holes.
+    /// The layers as printed, with the mark, and with each hole closed that would begin in mid-air; and the number of
+    /// closed holes.
     pub fn printed_layers(&self) -> (Vec<Prism>, usize) {
         let marked = mark::engrave_mark(&self.prisms, &self.mark);
         roof::close_unsupported_holes(&marked.unwrap_or_else(|| self.prisms.clone()))
@@ -72,7 +72,7 @@ impl Part {
         roof::unsupported_hole_centres(&self.prisms)
     }
 
-    /// The motion from the printed part to the position of a body, in that body's frame.
+    /// The motion that takes the printed part to the position of a body, in that body's frame.
     pub fn print_to_body(&self, body: &Body) -> PrintToBody {
         let [low, high] = body.z();
         PrintToBody {
@@ -121,7 +121,7 @@ impl Assembly {
         let noun_of = |part: &Part| noun_and_owner(&part.body_names[0]).0.to_owned();
         let nouns: Vec<_> = parts.iter().map(noun_of).collect();
         for (part, noun) in parts.iter_mut().zip(&nouns) {
-            if nouns.iter().filter(|other| *other == noun).count() > 1 {
+            if nouns.iter().filter(|listed| *listed == noun).count() > 1 {
                 part.mark = servo_digits(&part.body_names);
             }
         }
@@ -161,7 +161,7 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
             Some(part) => part.body_names.push(body.name.clone()),
             None => parts.push(Part {
                 is_turned_over,
-                is_rubbery: body.kind == Kind::Pad,
+                is_flexible: body.kind == Kind::Pad,
                 ..Part::single(&body.name, prisms)
             }),
         }
@@ -225,7 +225,7 @@ fn print_frame(body: &Body) -> Placement {
     let origin = first_shape.map_or(Vector::default(), |shape| shape.points[0]);
     // A pad has no bar; only its notch gives it a direction.
     let cuts = body.prisms.iter().flat_map(|prism| &prism.cut_shapes);
-    let bar = shapes()
+    let bar_vector = shapes()
         .chain(cuts)
         .find_map(|shape| match shape.points[..] {
             [from, to, ..] => Some(to - from),
@@ -233,7 +233,9 @@ fn print_frame(body: &Body) -> Placement {
         });
     Placement {
         origin,
-        x_axis: bar.map_or(Placement::CHASSIS.x_axis, |bar| bar * (1.0 / bar.length())),
+        x_axis: bar_vector.map_or(Placement::CHASSIS.x_axis, |vector| {
+            vector * (1.0 / vector.length())
+        }),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::bodies::builder::Builder;
 use crate::bodies::joints::Cranks;
 use crate::bodies::layout::Layout;
 use crate::bodies::{chassis, ends, legs, links, sliders, struts};
-use crate::layers::body::{Body, Mount, end_and_hand};
+use crate::layers::body::{Body, Mount, end_and_index};
 use crate::layers::placement::Placement;
 use crate::layers::stack::Stack;
 
@@ -65,7 +65,7 @@ impl Assembly {
         &self.alternatives
     }
 
-    /// The body with a name.
+    /// The body with this name, if any.
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)
     }
@@ -120,10 +120,10 @@ impl Assembly {
                 x_axis: vector_of(legs[servo].strut_direction),
             },
             Mount::Coupler(servo) => {
-                let (end, hand) = end_and_hand(servo);
-                let bars = cranks.five_bar(end);
-                let tip = [bars.left_tip, bars.right_tip][hand];
-                let coupler_direction = [bars.left_coupler, bars.right_coupler][hand];
+                let (end, index) = end_and_index(servo);
+                let five_bar = cranks.five_bar(end);
+                let tip = [five_bar.left_tip, five_bar.right_tip][index];
+                let coupler_direction = [five_bar.left_coupler, five_bar.right_coupler][index];
                 Placement {
                     origin: self.robot.lizard().to_chassis(end, tip),
                     x_axis: end.mirror(coupler_direction),

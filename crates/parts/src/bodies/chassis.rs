@@ -70,9 +70,9 @@ fn inward_direction(servo: usize) -> Vector {
 
 /// The positions of the two screws that hold a servo's flange.
 fn flange_hole_positions(builder: &Builder, servo: usize) -> [Vector; 2] {
-    let half = inward_direction(servo) * (builder.parts.servo.holes / 2.0);
+    let offset = inward_direction(servo) * (builder.parts.servo.holes / 2.0);
     let middle = case_middle(builder, servo);
-    [middle - half, middle + half]
+    [middle - offset, middle + offset]
 }
 
 /// Outline of a servo's seat, wider by `margin` on each side.
@@ -93,11 +93,11 @@ fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
         parts.fit,
         outward,
     );
-    let mut cut = vec![case_outline(builder, servo, parts.fit), notch];
-    cut.extend(
+    let mut shapes = vec![case_outline(builder, servo, parts.fit), notch];
+    shapes.extend(
         flange_hole_positions(builder, servo).map(|position| Shape::disc(position, PILOT_RADIUS)),
     );
-    cut
+    shapes
 }
 
 fn standoff_positions() -> [Vector; 4] {
@@ -114,9 +114,9 @@ fn add_plate(builder: &mut Builder) {
     // First all openings, then all holes: the files list the shapes in this order, and the files
     // must not change.
     let servo_cutouts: Vec<_> = (0..4).map(|servo| cutouts(builder, servo)).collect();
-    let openings = servo_cutouts.iter().flat_map(|cut| &cut[..2]);
-    let cut: Vec<_> = openings
-        .chain(servo_cutouts.iter().flat_map(|cut| &cut[2..]))
+    let openings = servo_cutouts.iter().flat_map(|shapes| &shapes[..2]);
+    let all_cutouts: Vec<_> = openings
+        .chain(servo_cutouts.iter().flat_map(|shapes| &shapes[2..]))
         .cloned()
         .collect();
     let base = Shape::rectangle(
@@ -125,10 +125,10 @@ fn add_plate(builder: &mut Builder) {
         plate.corner_radius,
     );
     let mut filled = vec![base];
-    let mut through_holes = cut.clone();
-    // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
+    let mut through_holes = all_cutouts.clone();
+    // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
     for (leg, [pivot_arm, driven_arm, idle_arm]) in layout.legs.iter().zip(plate.arms) {
-        let bar_of = |[from, to]: [Vector; 2], half: f64| Shape::bar(from, to, half);
+        let bar_of = |[from, to]: [Vector; 2], half_width: f64| Shape::bar(from, to, half_width);
         filled.push(bar_of(pivot_arm, plate.arm_half_width));
         for (pivot, arm) in [
             (leg.crank_pivot, driven_arm),
@@ -150,7 +150,7 @@ fn add_plate(builder: &mut Builder) {
             [low, high - mark::MARK_DEPTH],
         ),
         Prism::new(filled, engraved_cuts, [high - mark::MARK_DEPTH, high]),
-        Prism::new(seats, cut, stack.seat),
+        Prism::new(seats, all_cutouts, stack.seat),
     ];
     builder.add_printed("plate", Mount::Chassis, prisms);
 }
@@ -165,19 +165,27 @@ pub fn corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     let middle = case_middle(builder, servo);
     let mut filled = vec![seat_outline(builder, servo, SEAT_MARGIN)];
     let [pivot_arm, driven_arm, idle_arm] = plate.arms[servo];
-    // As in the plate, bars that end at the same point differ by 0.01 mm.
+    // As in the plate, the half widths of bars that start at the same point differ by 0.01 mm.
     filled.push(Shape::bar(pivot_arm[0], pivot_arm[1], plate.arm_half_width));
     for [from, to] in [driven_arm, idle_arm] {
         filled.push(Shape::bar(from, to, plate.arm_half_width - 0.01));
         filled.push(Shape::bar(to, middle, plate.arm_half_width - 0.02));
     }
-    let cut = cutouts(builder, servo);
+    let servo_cutouts = cutouts(builder, servo);
     let pivots =
         [leg.crank_pivot, leg.follower_pivot].map(|position| builder.clearance_hole(position));
     let raised_seat = stack.seat.map(|z| z + parts.plate);
     vec![
-        Prism::new(filled, [&cut[..], &pivots].concat(), [0.0, parts.plate]),
-        Prism::new([seat_outline(builder, servo, 0.0)], cut, raised_seat),
+        Prism::new(
+            filled,
+            [&servo_cutouts[..], &pivots].concat(),
+            [0.0, parts.plate],
+        ),
+        Prism::new(
+            [seat_outline(builder, servo, 0.0)],
+            servo_cutouts,
+            raised_seat,
+        ),
     ]
 }
 
@@ -225,7 +233,7 @@ fn add_case(builder: &mut Builder, servo: usize) {
     ];
     builder.add_body(format!("servo {name}"), Kind::Servo, Mount::Chassis, prisms);
     builder.allow_contact(&[format!("horn {name}")]);
-    for (number, position) in flange_hole_positions(builder, servo)
+    for (index, position) in flange_hole_positions(builder, servo)
         .into_iter()
         .enumerate()
     {
@@ -233,7 +241,7 @@ fn add_case(builder: &mut Builder, servo: usize) {
             [Shape::disc(position, 2.2)],
             [bottom + flange_top, bottom + flange_top + 1.6],
         );
-        let screw = format!("servo screw {name} {}", number + 1);
+        let screw = format!("servo screw {name} {}", index + 1);
         builder.add_body(screw, Kind::ServoScrew, Mount::Chassis, [head]);
     }
 }
@@ -309,9 +317,9 @@ fn add_board(builder: &mut Builder) {
     let board = Prism::new(block_of(x, y), holes, [low, top]);
     let components = Prism::new(block_of(x - 4.0, y - 4.0), heads, [top, low + z]);
     builder.add_body("board", Kind::Board, Mount::Chassis, [board, components]);
-    for (number, (x, y)) in UNO_HOLES.into_iter().enumerate() {
-        if number != UNO_TIGHT_HOLE {
-            let name = format!("board {}", number + 1);
+    for (index, (x, y)) in UNO_HOLES.into_iter().enumerate() {
+        if index != UNO_TIGHT_HOLE {
+            let name = format!("board {}", index + 1);
             let bolt = Bolt::new(&name, Mount::Chassis, vector(x, y), top, Direction::Down);
             builder.add_screw(&bolt, 10.0);
         }

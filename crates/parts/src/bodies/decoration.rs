@@ -9,7 +9,7 @@ use lizard_kinematics::{End, Solution, Vector};
 
 use crate::bodies::builder::{Bolt, Builder, Direction};
 use crate::bodies::names::servo_and_leg_names;
-use crate::layers::body::{Mount, Prism, coupler_length, end_and_hand};
+use crate::layers::body::{Mount, Prism, coupler_length, end_and_index};
 use crate::layers::shape::Shape;
 use crate::layers::stack::HEAD_PLAY;
 
@@ -44,9 +44,9 @@ fn decoration_length(builder: &Builder, end: End) -> f64 {
 /// The holes for the second screw in a coupler's lower and upper layer. In the left coupler of the tail, the head of
 /// the screw is sunk into the upper layer. `None` for a coupler that carries no decorative part.
 pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
-    let (end, hand) = end_and_hand(servo);
+    let (end, index) = end_and_index(servo);
     let position = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
-    match (decoration_length(builder, end) > 0.0, end, hand) {
+    match (decoration_length(builder, end) > 0.0, end, index) {
         (true, End::Tail, 0) => Some([
             builder.clearance_hole(position),
             builder.head_recess(position),
@@ -64,25 +64,24 @@ pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
         return EndDecoration::default();
     };
     let [left, right] = end.servos();
-    let (below, name, upper_part) = match end {
+    let (lower_thickness, name, upper_part) = match end {
         End::Head => {
-            let shape = head_part(builder, right, &neutral, length);
-            (0.0, "head plate".to_owned(), shape)
+            let part = head_part(builder, right, &neutral, length);
+            (0.0, "head plate".to_owned(), part)
         }
         End::Tail => {
-            let shape = tail_part(builder, left, &neutral, length);
-            add_under_lower_coupler(builder, left, shape);
-            let shape = tail_part(builder, right, &neutral, length);
+            let lower_part = tail_part(builder, left, &neutral, length);
+            add_under_lower_coupler(builder, left, lower_part);
             (
                 THICKNESS,
                 format!("tail {}", servo_and_leg_names(right).0),
-                shape,
+                tail_part(builder, right, &neutral, length),
             )
         }
     };
     add_on_upper_coupler(builder, right, &name, upper_part);
     EndDecoration {
-        lower_thickness: below,
+        lower_thickness,
         upper_thickness: THICKNESS,
         upper_bodies: vec![name],
     }
@@ -93,9 +92,9 @@ type FlatPart = (Vec<Shape>, Vec<Shape>);
 
 /// An end's point, and the direction that points outward at neutral, both in a coupler's frame.
 fn point_and_direction(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
-    let (end, hand) = end_and_hand(servo);
-    let bars = neutral.end(end);
-    let coupler_direction = end.mirror([bars.left_coupler, bars.right_coupler][hand]);
+    let (end, index) = end_and_index(servo);
+    let five_bar = neutral.end(end);
+    let coupler_direction = end.mirror([five_bar.left_coupler, five_bar.right_coupler][index]);
     let chassis_direction = Vector::new(0.0, end.sign());
     let point = Vector::new(coupler_length(builder.robot, servo), 0.0);
     [
@@ -107,7 +106,7 @@ fn point_and_direction(builder: &Builder, servo: usize, neutral: &Solution) -> [
     ]
 }
 
-/// A direction after a turn of `angle_deg` counter-clockwise.
+/// Turns a direction counter-clockwise by `angle_deg`.
 fn rotate(direction: Vector, angle_deg: f64) -> Vector {
     let turn = Vector::direction(angle_deg);
     direction * turn.x + direction.rotated_left() * turn.y
@@ -116,17 +115,17 @@ fn rotate(direction: Vector, angle_deg: f64) -> Vector {
 fn tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
     let [point, straight_direction] = point_and_direction(builder, servo, neutral);
     // The left tail link points to the robot's left, the right one to its right.
-    let (_, hand) = end_and_hand(servo);
+    let (_, index) = end_and_index(servo);
     let link_direction = rotate(
         straight_direction,
-        if hand == 0 {
+        if index == 0 {
             -TAIL_LINK_ANGLE
         } else {
             TAIL_LINK_ANGLE
         },
     );
-    let half = builder.half_bar_width();
-    let side_offset = link_direction.rotated_left() * (half - 1.5);
+    let half_width = builder.half_bar_width();
+    let side_offset = link_direction.rotated_left() * (half_width - 1.5);
     let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
     let corners = [
         point + side_offset,
@@ -134,7 +133,7 @@ fn tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -
         point + link_direction * (length - 1.5),
     ];
     let filled = vec![
-        Shape::bar(second_screw, point, half),
+        Shape::bar(second_screw, point, half_width),
         Shape::hull(&corners, 1.5),
     ];
     (filled, vec![builder.clearance_hole(point)])
@@ -204,13 +203,13 @@ fn add_under_lower_coupler(builder: &mut Builder, servo: usize, (filled, mut cut
     add_screw(builder, &name, servo, seat_z);
 }
 
-fn add_screw(builder: &mut Builder, part_name: &str, servo: usize, head: f64) {
+fn add_screw(builder: &mut Builder, part_name: &str, servo: usize, head_z: f64) {
     let position = second_screw_position(builder, servo);
     let bolt = Bolt::new(
         part_name,
         Mount::Coupler(servo),
         position,
-        head,
+        head_z,
         Direction::Down,
     );
     builder.add_screw(&bolt, SECOND_SCREW_LENGTH);

@@ -19,8 +19,8 @@ pub fn add(builder: &mut Builder) {
             upper_coupler: upper,
             ..
         } = builder.stack;
-        add_bar(builder, left, lower);
-        add_bar(builder, right, upper);
+        add_coupler(builder, left, lower);
+        add_coupler(builder, right, upper);
         // The right coupler lies higher, so a spacer fills the gap between the crank and this coupler.
         for (servo, top, spacer_top) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))]
         {
@@ -37,8 +37,8 @@ pub fn add(builder: &mut Builder) {
         let apex = Vector::new(coupler_length(builder.robot, left), 0.0);
         let decoration = decoration::add(builder, end);
         let mut contacts: Vec<&str> = decoration.upper_bodies.iter().map(String::as_str).collect();
-        let right = coupler_name(right);
-        contacts.push(&right);
+        let upper_coupler_name = coupler_name(right);
+        contacts.push(&upper_coupler_name);
         let (head_z, mount) = (lower[0] - decoration.lower_thickness, Mount::Coupler(left));
         builder.add_bolt(&Bolt {
             nut_z: upper[1] + decoration.upper_thickness + HEAD_PLAY,
@@ -50,7 +50,7 @@ pub fn add(builder: &mut Builder) {
 
 /// Adds the coupler of a servo between the heights `z`, mm. If a second screw fixes a decorative part to it, the
 /// coupler has two layers, since the head of that screw may be sunk into the upper one.
-fn add_bar(builder: &mut Builder, servo: usize, z: Span) {
+fn add_coupler(builder: &mut Builder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);
     let layer_of = |hole: Option<Shape>, z: Span| {

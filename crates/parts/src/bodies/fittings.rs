@@ -320,10 +320,10 @@ fn add_plugs(builder: &mut Builder) {
         );
     }
     let [socket_height, socket_overhang] = SOCKET_HEIGHT_AND_OVERHANG;
-    let [_, plug_length, plug_height] = Fitting::RoundPlug.facts().size;
+    let [_, plug_length, plug_height] = Fitting::BarrelPlug.facts().size;
     let y = -(UNO_SIZE[1] + plug_length) / 2.0 - socket_overhang - 0.1;
     let low = builder.stack.board_boss[1] + UNO_BOARD_THICKNESS + socket_height - plug_height / 2.0;
-    add_block(builder, Fitting::RoundPlug, vector(SOCKET_X, y), low);
+    add_block(builder, Fitting::BarrelPlug, vector(SOCKET_X, y), low);
 }
 
 /// Adds the strap around battery and plate.

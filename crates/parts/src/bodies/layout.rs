@@ -8,7 +8,7 @@ use lizard_robot::{LegPlan, Plate, Robot};
 /// Distance of the standoffs from the plate's middle, mm: to the right, forward.
 pub const STANDOFF_DISTANCES: [f64; 2] = [8.0, 39.0];
 
-/// Radius of the circle around a hexagonal standoff of 5.5 mm over flats, mm.
+/// Radius of the circle around a hexagonal standoff of 5.5 mm across flats, mm.
 pub const STANDOFF_RADIUS: f64 = 3.2;
 /// Size of an Arduino UNO, mm: width and length of its board of 2100 x 2700 mil, and the height from
 /// the board's underside to the top of its components.
@@ -45,9 +45,9 @@ impl Layout {
         }
         for end in End::ALL {
             let [left, right] = end.servos();
-            let bars = lizard.end(end);
+            let five_bar = lizard.end(end);
             (crank_lengths[left], crank_lengths[right]) =
-                (bars.left_crank_length, bars.right_crank_length);
+                (five_bar.left_crank_length, five_bar.right_crank_length);
         }
         Self {
             shafts: lizard.shafts(),

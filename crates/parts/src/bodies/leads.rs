@@ -34,9 +34,9 @@ pub fn lead_notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> S
     let reach = body.length / 2.0 + LEAD_SECTION[1] + fit;
     // The notch overlaps the opening for the case.
     let from = body.length / 2.0 - 2.0;
-    let half = (LEAD_SECTION[0] + NOTCH_PLAY) / 2.0;
+    let half_width = (LEAD_SECTION[0] + NOTCH_PLAY) / 2.0;
     let corner_at = |x: f64, y: f64| middle + Vector::new(x, outward * y);
-    let [left, right] = [-half, half].map(|x| [from, reach].map(|y| corner_at(x, y)));
+    let [left, right] = [-half_width, half_width].map(|x| [from, reach].map(|y| corner_at(x, y)));
     Shape::hull(&[left, right].concat(), 0.0)
 }
 
@@ -60,12 +60,12 @@ pub fn add(builder: &mut Builder) {
         let body = builder.parts.servo;
         let middle = builder.layout.plate.case_centres[servo];
         let half_size = Vector::new(body.width, body.length) * 0.5;
-        // The neighbour's lead is on the other side of the middle line.
-        let inner = -middle.x.signum();
-        let x = middle.x + inner * (half_size.x + LEAD_SECTION[1]);
+        // The neighbour's lead is on the other side of the plate's centre line.
+        let inward_sign = -middle.x.signum();
+        let x = middle.x + inward_sign * (half_size.x + LEAD_SECTION[1]);
         let bend_y = middle.y + outward * (half_size.y + BEND_LENGTH / 2.0);
         let vector = Vector::new;
-        let riser_position = wire_hole_centre(outward) + vector(-inner * 1.6, 0.0);
+        let riser_position = wire_hole_centre(outward) + vector(-inward_sign * 1.6, 0.0);
         let radius = LEAD_SECTION[1];
         let low = builder.stack.servo_bottom + LEAD_EXIT[0];
         let [bend, corner] = [vector(middle.x, bend_y), vector(x, bend_y)];

@@ -60,12 +60,12 @@ fn add_crank(builder: &mut Builder, servo: usize) {
         crank_joint: joint,
         ..
     } = builder.layout.legs[servo];
-    let (pivot, half) = (Vector::default(), builder.half_bar_width());
-    // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
+    let (pivot, half_width) = (Vector::default(), builder.half_bar_width());
+    // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
     let filled = [
-        Shape::disc(pivot, half + 1.0),
-        Shape::bar(pivot, joint, half),
-        Shape::bar(pivot, anchor, half - 0.01),
+        Shape::disc(pivot, half_width + 1.0),
+        Shape::bar(pivot, joint, half_width),
+        Shape::bar(pivot, anchor, half_width - 0.01),
         Shape::disc(anchor, builder.nut_boss_radius()),
     ];
     let holes = [builder.clearance_hole(pivot), builder.clearance_hole(joint)];
@@ -74,10 +74,10 @@ fn add_crank(builder: &mut Builder, servo: usize) {
         holes_with(builder.nut_pocket(anchor)),
         holes_with(builder.clearance_hole(anchor)),
     );
-    let (nut, _) = stack.anchor_nut(parts);
-    let nut_z = nut.clamp(stack.crank[0], stack.crank[1]);
-    let bearing = Shape::disc(pivot, half - 0.2);
-    let bosses = [bearing.clone(), Shape::disc(anchor, half - 0.4)];
+    let (nut_z, _) = stack.anchor_nut(parts);
+    let nut_z = nut_z.clamp(stack.crank[0], stack.crank[1]);
+    let bearing = Shape::disc(pivot, half_width - 0.2);
+    let bosses = [bearing.clone(), Shape::disc(anchor, half_width - 0.4)];
     let mut prisms = vec![
         Prism::new(filled.clone(), pocket_holes, [stack.crank[0], nut_z]),
         Prism::new(filled, through_holes.clone(), [nut_z, stack.crank[1]]),
@@ -91,13 +91,13 @@ fn add_crank(builder: &mut Builder, servo: usize) {
 fn add_follower(builder: &mut Builder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].crank_joint);
-    let (stack, half) = (builder.stack, builder.half_bar_width());
+    let (stack, half_width) = (builder.stack, builder.half_bar_width());
     let holes = [builder.clearance_hole(pivot), builder.clearance_hole(joint)];
-    let bearing = Shape::disc(pivot, half - 0.2);
+    let bearing = Shape::disc(pivot, half_width - 0.2);
     let bearing = Prism::new([bearing], [holes[0].clone()], stack.bearing);
     let bar = [
-        Shape::disc(pivot, half + 1.0),
-        Shape::bar(pivot, joint, half),
+        Shape::disc(pivot, half_width + 1.0),
+        Shape::bar(pivot, joint, half_width),
     ];
     let prisms = [Prism::new(bar, holes, stack.crank), bearing];
     builder.add_printed(format!("follower {leg}"), Mount::Follower(servo), prisms);
@@ -122,7 +122,7 @@ fn add_coupler(builder: &mut Builder, servo: usize) {
     let (from, to) = (Vector::default(), Vector::new(ground, 0.0));
     let clamps = clamp_positions(builder);
     let through_holes = clamps.map(|position| builder.clearance_hole(position));
-    let sinks = clamps.map(|position| builder.head_recess(position));
+    let head_recesses = clamps.map(|position| builder.head_recess(position));
     let joints = [builder.clearance_hole(from), builder.clearance_hole(to)];
     let mut bar = vec![Shape::bar(from, to, builder.half_bar_width())];
     bar.extend(clamps.map(|position| Shape::disc(position, builder.head_boss_radius())));
@@ -130,7 +130,7 @@ fn add_coupler(builder: &mut Builder, servo: usize) {
     let through_holes = [joints.clone(), through_holes].concat();
     let prisms = [
         Prism::new(bar.clone(), through_holes, [low, seat_z]),
-        Prism::new(bar, [joints, sinks].concat(), [seat_z, high]),
+        Prism::new(bar, [joints, head_recesses].concat(), [seat_z, high]),
     ];
     builder.add_printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
 }
@@ -140,22 +140,22 @@ fn add_foot(builder: &mut Builder, servo: usize) {
     let stack = builder.stack;
     let foot = builder.layout.legs[servo].foot;
     let clamps = clamp_positions(builder);
-    let half = builder.half_bar_width();
+    let half_width = builder.half_bar_width();
     // The column begins at the end of the leaf's free length.
     let column_offset = clamps[0] - foot;
     let column_direction = column_offset * (1.0 / column_offset.length());
     let root = foot + column_direction * (leaf_length(builder.parts.bar) + COLUMN_HALF_WIDTH);
-    // As in the crank, bars that end at the same point differ by 0.01 mm.
+    // As in the crank, the half widths of bars that start at the same point differ by 0.01 mm.
     let column = vec![
         Shape::bar(clamps[0], clamps[1], COLUMN_HALF_WIDTH),
         Shape::bar(clamps[0], root, COLUMN_HALF_WIDTH - 0.01),
     ];
     let tip = Shape::disc(foot, TIP_RADIUS);
     let leaf = vec![
-        Shape::bar(root, foot, half),
+        Shape::bar(root, foot, half_width),
         tip.clone(),
-        Shape::bar(clamps[0], clamps[1], half - 0.01),
-        Shape::bar(clamps[0], root, half - 0.02),
+        Shape::bar(clamps[0], clamps[1], half_width - 0.01),
+        Shape::bar(clamps[0], root, half_width - 0.02),
     ];
     let (pocket, hole) = (builder.nut_pocket(foot), builder.clearance_hole(foot));
     let threads = clamps.map(|position| builder.thread_hole(position));
@@ -222,10 +222,10 @@ fn add_screws(builder: &mut Builder, servo: usize) {
             ..Bolt::new(&screw, mount, joint, head_z, Direction::Up)
         });
     }
-    let (nut, length) = stack.anchor_nut(parts);
+    let (nut_z, length) = stack.anchor_nut(parts);
     let name = format!("leg anchor {leg}");
     builder.add_bolt(&Bolt {
-        nut_z: nut,
+        nut_z,
         length: Some(length),
         contacts: &[&builder.strut_name(leg)],
         ..Bolt::new(

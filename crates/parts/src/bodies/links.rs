@@ -40,21 +40,21 @@ pub fn add(builder: &mut Builder) {
 
 /// The outline of the horn's arm, which points along the crank, widened by `margin` mm on each side.
 pub fn horn_arm(horn: &Horn, margin: f64) -> Vec<Shape> {
-    let (hub, tip) = (horn.hub / 2.0 + margin, horn.tip / 2.0 + margin);
+    let (hub_radius, tip_radius) = (horn.hub / 2.0 + margin, horn.tip / 2.0 + margin);
     let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
-    // From hub to tip the arm gets narrower.
-    let half_width = 0.8 * hub;
+    // The arm gets narrower from hub to tip.
+    let half_width = 0.8 * hub_radius;
     let corners = [
         (0.0, -half_width),
-        (end.x, -tip),
-        (end.x, tip),
+        (end.x, -tip_radius),
+        (end.x, tip_radius),
         (0.0, half_width),
     ];
     let taper = Shape::hull(&corners.map(|(x, y)| Vector::new(x, y)), 0.0);
     vec![
-        Shape::disc(Vector::default(), hub),
+        Shape::disc(Vector::default(), hub_radius),
         taper,
-        Shape::disc(end, tip + 0.05),
+        Shape::disc(end, tip_radius + 0.05),
     ]
 }
 
@@ -91,16 +91,16 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let tip = Vector::new(layout.crank_lengths[servo], 0.0);
     let arm_tip = Vector::new(0.0, layout.arm_side[servo] * layout.arm_lengths[servo]);
     let anchor = layout.legs[servo].anchor;
-    let half = builder.half_bar_width();
+    let half_width = builder.half_bar_width();
     let hub_radius = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
     // Without this brace the link would break in the corner between crank and arm.
-    let brace = Shape::hull(&[hub, tip * 0.45, arm_tip * 0.45], 0.6 * half);
-    // Bars that end at the same point differ by 0.01 mm in half their width, so that no two ends are the same arc.
+    let brace = Shape::hull(&[hub, tip * 0.45, arm_tip * 0.45], 0.6 * half_width);
+    // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
     let filled = vec![
         Shape::disc(hub, hub_radius),
-        Shape::bar(hub, tip, half),
-        Shape::bar(hub, arm_tip, half - 0.01),
-        Shape::bar(hub, anchor, half - 0.02),
+        Shape::bar(hub, tip, half_width),
+        Shape::bar(hub, arm_tip, half_width - 0.01),
+        Shape::bar(hub, anchor, half_width - 0.02),
         brace,
         Shape::disc(tip, builder.nut_boss_radius()),
         Shape::disc(arm_tip, builder.nut_boss_radius()),
@@ -130,9 +130,9 @@ fn add_link(builder: &mut Builder, servo: usize) {
     heights.dedup_by(|a, b| *a - *b < 1e-9);
     let layer_of = |z: &[f64]| {
         let is_cut_in = |span: Span| span[0] < z[1] - 1e-9 && z[0] < span[1] - 1e-9;
-        let cut = cuts.iter().filter(|(_, span)| is_cut_in(*span));
-        let cut: Vec<_> = cut.flat_map(|(shapes, _)| shapes.to_vec()).collect();
-        Prism::new(filled.clone(), cut, [z[0], z[1]])
+        let layer_cuts = cuts.iter().filter(|(_, span)| is_cut_in(*span));
+        let cut_shapes: Vec<_> = layer_cuts.flat_map(|(shapes, _)| shapes.to_vec()).collect();
+        Prism::new(filled.clone(), cut_shapes, [z[0], z[1]])
     };
     let prisms: Vec<_> = heights.windows(2).map(layer_of).collect();
     builder.add_printed(format!("link {name}"), Mount::Link(servo), prisms);
@@ -148,7 +148,7 @@ fn add_horn_screws(builder: &mut Builder, servo: usize) {
     let (name, _) = servo_and_leg_names(servo);
     let top = builder.stack.horn_pocket[0] + builder.parts.horn.thickness;
     let [radius, head_height] = HORN_SCREW_HEAD_SIZE;
-    for (number, position) in horn_screw_positions(&builder.parts.horn)
+    for (index, position) in horn_screw_positions(&builder.parts.horn)
         .into_iter()
         .enumerate()
     {
@@ -157,7 +157,7 @@ fn add_horn_screws(builder: &mut Builder, servo: usize) {
             disc_prism_of(PILOT_RADIUS, [top - HORN_SCREW_LENGTH, top]),
             disc_prism_of(radius, [top, top + head_height]),
         ];
-        let name = format!("horn screw {name} {}", number + 1);
+        let name = format!("horn screw {name} {}", index + 1);
         let kind = Kind::HornScrew(HORN_SCREW_LENGTH);
         builder.add_body(name, kind, Mount::Link(servo), prisms);
     }

@@ -1,7 +1,7 @@
 //! The pads: domes under the feet, each on the head of the screw that sets its foot's height.
 //!
 //! No foot is lifted, so a flat pad would stop at the edge of a tile or a carpet. A dome slides over such an edge,
-//! since its slope there is hardly steeper than friction allows. The pad is printed from a rubbery filament with its
+//! since its slope there is hardly steeper than friction allows. The pad is printed from a flexible filament with its
 //! flat side on the bed. Its underside has a hole for the hex key. The screw's head snaps in from above, through a
 //! mouth that is narrower than the head.
 //!
@@ -16,7 +16,7 @@ use crate::layers::body::Prism;
 use crate::layers::shape::Shape;
 use crate::layers::stack::PAD_LIP_HEIGHT;
 
-/// Radius of the hole for a 2 mm hex key, which is 2.3 mm over its corners, mm.
+/// Radius of the hole for a 2 mm hex key, which is 2.3 mm across corners, mm.
 const KEY_HOLE_RADIUS: f64 = 1.6;
 /// Width of the rim around the key's hole, mm: two printed lines.
 const RIM_WIDTH: f64 = 0.8;
@@ -55,9 +55,10 @@ pub(crate) fn strip_widths(parts: &Parts) -> [f64; 2] {
 /// length one. The first side of the shape runs to the robot's right.
 fn notch_shape(parts: &Parts, point: Vector, head_direction: Vector) -> Shape {
     let right = Vector::new(head_direction.y, -head_direction.x);
-    let (half_width, half) = (parts.strip / 2.0 + parts.fit, parts.pad.width / 2.0);
+    let half_width = parts.strip / 2.0 + parts.fit;
+    let pad_radius = parts.pad.width / 2.0;
     let corner_at = |x: f64, y: f64| point + right * x + head_direction * y;
-    let (low, high) = (half - NOTCH_DEPTH, half + 1.0);
+    let (low, high) = (pad_radius - NOTCH_DEPTH, pad_radius + 1.0);
     Shape {
         points: vec![
             corner_at(-half_width, low),
@@ -78,10 +79,10 @@ pub(crate) fn pad_layers(
     head_direction: Vector,
 ) -> Vec<Prism> {
     let (pad, screw) = (parts.pad, parts.screw);
-    let half = pad.width / 2.0;
+    let pad_radius = pad.width / 2.0;
     let top = floor + pad.height;
     let seat = top - PAD_LIP_HEIGHT - screw.head_height;
-    let dome = pad.dome_height().unwrap_or(half).min(pad.height);
+    let dome = pad.dome_height().unwrap_or(pad_radius).min(pad.height);
     let hole_at = |z: f64| {
         let radius = if z < seat {
             KEY_HOLE_RADIUS
@@ -95,13 +96,15 @@ pub(crate) fn pad_layers(
     let radius_at = |z: f64| {
         let height = (z - floor).min(pad.radius);
         let sphere_radius = (height * (2.0 * pad.radius - height)).sqrt();
-        sphere_radius.max(KEY_HOLE_RADIUS + RIM_WIDTH).min(half)
+        sphere_radius
+            .max(KEY_HOLE_RADIUS + RIM_WIDTH)
+            .min(pad_radius)
     };
     // The height at which the sphere is as wide as the rim.
     let rim_height =
         pad.radius - (pad.radius.powi(2) - (KEY_HOLE_RADIUS + RIM_WIDTH).powi(2)).sqrt();
     let cone_count = (dome / CONE_HEIGHT).ceil() as u32;
-    let heights = (0..=cone_count).map(|number| (f64::from(number) * CONE_HEIGHT).min(dome));
+    let heights = (0..=cone_count).map(|index| (f64::from(index) * CONE_HEIGHT).min(dome));
     let cones = heights.filter(|height| *height > rim_height + CONE_HEIGHT / 2.0);
     let mut levels: Vec<f64> = cones
         .map(|height| floor + height)
@@ -110,17 +113,17 @@ pub(crate) fn pad_layers(
     levels.sort_by(f64::total_cmp);
     levels.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     let notch = (parts.strip > 0.0).then(|| notch_shape(parts, point, head_direction));
-    let layer_of = |pair: &[f64]| {
-        let z = [pair[0], pair[1]];
+    let layer_between = |heights: &[f64]| {
+        let z = [heights[0], heights[1]];
         let (radii, hole) = (z.map(radius_at), hole_at(f64::midpoint(z[0], z[1])));
         match &notch {
-            // A cone with an upright cut has an edge that is not an arc, so this layer has upright walls.
-            Some(notch) if radii[0] > half - NOTCH_DEPTH => {
+            // A cone with a vertical cut has an edge that is not an arc, so this layer has vertical walls.
+            Some(notch) if radii[0] > pad_radius - NOTCH_DEPTH => {
                 let disc = Shape::disc(point, radii[0]);
                 Prism::new([disc], [hole, notch.clone()], z)
             }
             _ => Prism::cone(point, radii, hole, z),
         }
     };
-    levels.windows(2).map(layer_of).collect()
+    levels.windows(2).map(layer_between).collect()
 }

@@ -55,26 +55,30 @@ pub fn add(builder: &mut Builder) {
 
 fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let (parts, stack) = (builder.parts, builder.stack);
-    let half = builder.half_bar_width();
+    let half_width = builder.half_bar_width();
     let pin = Vector::default();
     let bore_width = ROD_WIDTH + 2.0 * parts.fit;
     let outer_width = bore_width + 2.0 * parts.wall;
     let middle = Vector::new(lengths.sleeve / 2.0, lengths.lateral_offset);
     let case = Shape::rectangle(middle, Vector::new(lengths.sleeve, outer_width), 0.8);
     // The sleeve's corners must not stick out beyond the arm of its eye.
-    let arm = Shape::bar(pin, Vector::new(half, lengths.lateral_offset), half - 0.02);
+    let arm = Shape::bar(
+        pin,
+        Vector::new(half_width, lengths.lateral_offset),
+        half_width - 0.02,
+    );
     // The bore is open at both ends, so the cut is longer than the sleeve.
     let size = Vector::new(lengths.sleeve + 2.0 * lengths.rod, bore_width);
     let open_bore = Shape::rectangle(middle, size, 0.0);
-    let eye = [Shape::disc(pin, half), arm, case.clone()];
+    let eye = [Shape::disc(pin, half_width), arm, case.clone()];
     let hole = builder.clearance_hole(pin);
     let (low, top) = (stack.sleeve[0], stack.lower_coupler[1]);
-    let [begin, end] = stack.bore;
+    let [bore_low, bore_high] = stack.bore;
     let mut prisms = vec![
-        Prism::new(eye.clone(), [hole.clone()], [low, begin]),
-        Prism::new(eye, [hole, open_bore.clone()], [begin, top]),
-        Prism::new([case.clone()], [open_bore], [top, end]),
-        Prism::solid([case], [end, stack.sleeve[1]]),
+        Prism::new(eye.clone(), [hole.clone()], [low, bore_low]),
+        Prism::new(eye, [hole, open_bore.clone()], [bore_low, top]),
+        Prism::new([case.clone()], [open_bore], [top, bore_high]),
+        Prism::solid([case], [bore_high, stack.sleeve[1]]),
     ];
     prisms.retain(Prism::has_height);
     builder.add_printed(format!("sleeve {side}"), Mount::Sleeve(side), prisms);
@@ -82,13 +86,17 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
 }
 
 fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
-    let half = builder.half_bar_width();
+    let half_width = builder.half_bar_width();
     let pin = Vector::default();
     let middle = Vector::new(-lengths.rod / 2.0, lengths.lateral_offset);
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD_WIDTH), 1.0);
     // The bend lies ahead of the pin, so that the sleeve can come near the pin.
-    let bend = Shape::bar(pin, Vector::new(1.0, lengths.lateral_offset), half - 0.02);
-    let filled = [Shape::disc(pin, half), bend, bar];
+    let bend = Shape::bar(
+        pin,
+        Vector::new(1.0, lengths.lateral_offset),
+        half_width - 0.02,
+    );
+    let filled = [Shape::disc(pin, half_width), bend, bar];
     let prism = Prism::new(filled, [builder.clearance_hole(pin)], builder.stack.rod);
     builder.add_printed(format!("rod {side}"), Mount::Rod(side), [prism]);
 }

@@ -50,7 +50,7 @@ fn strut_body(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
     }
 }
 
-/// The point of a strut's axis at a distance from its servo's end, mm.
+/// The point of a strut's axis at a distance from the strut's servo end, mm.
 fn point_at(x: f64) -> Vector {
     Vector::new(x, 0.0)
 }
@@ -65,8 +65,9 @@ fn channel_half_width(builder: &Builder) -> f64 {
 fn slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     let (stack, half_width) = (builder.stack, channel_half_width(builder));
     let length = builder.layout.legs[servo].strut_length;
-    let whole_bar_of = |half: f64| Shape::bar(point_at(0.0), point_at(length + SLOT_LENGTH), half);
-    let outer = vec![whole_bar_of(half_width + builder.parts.wall)];
+    let full_length_bar_of =
+        |half_width: f64| Shape::bar(point_at(0.0), point_at(length + SLOT_LENGTH), half_width);
+    let outer = vec![full_length_bar_of(half_width + builder.parts.wall)];
     let hole = builder.clearance_hole(point_at(0.0));
     let slot = Shape::bar(
         point_at(length),
@@ -75,7 +76,7 @@ fn slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     );
     vec![
         Prism::new(outer.clone(), [hole, slot], stack.strut_floor),
-        Prism::new(outer, [whole_bar_of(half_width)], stack.strut_wall),
+        Prism::new(outer, [full_length_bar_of(half_width)], stack.strut_wall),
     ]
 }
 

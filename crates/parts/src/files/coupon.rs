@@ -56,12 +56,12 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         floor_cuts.extend(through_holes.iter().cloned());
         upper_cuts.extend(through_holes);
         floor_cuts.push(Shape::disc(vector(x, pocket_y), horn.hub / 2.0 + fit));
-        let upright = Placement {
+        let arm_placement = Placement {
             origin: vector(x, pocket_y),
             x_axis: vector(0.0, 1.0),
         };
         let arm_shapes = horn_arm(horn, POCKET_FIT_FACTOR * fit).into_iter();
-        upper_cuts.extend(arm_shapes.map(|shape| shape.placed(&upright)));
+        upper_cuts.extend(arm_shapes.map(|shape| shape.placed(&arm_placement)));
         for dot in 0..=column {
             let dot_x = x + 1.6 + 1.6 * f64::from(dot % 3);
             let dot_position = vector(dot_x, hole_y + 1.6 - 3.2 * f64::from(dot / 3));

@@ -1,4 +1,4 @@
-//! A sheet as a DXF file of AutoCAD release 12, which the programs of all cutters can read.
+//! A sheet as a DXF file of AutoCAD release 12, which the software of every cutter can read.
 //!
 //! The crate that writes DXF depends on an image decoder and a calendar, so this module has its own writer for the
 //! few entities that a sheet needs.
@@ -31,15 +31,15 @@ pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
     file.add_layers(sheet);
     file.add_all(&[(0, "SECTION"), (2, "ENTITIES")]);
     for layer in &sheet.layers {
-        for line in &layer.loops {
-            file.add_line(line, &layer.name);
+        for outline_loop in &layer.loops {
+            file.add_loop(outline_loop, &layer.name);
         }
     }
     file.add_all(&[(0, "ENDSEC"), (0, "EOF")]);
     file.0
 }
 
-/// Pairs of a group code and a value.
+/// The text of a DXF file: pairs of a group code and a value.
 #[derive(Default)]
 struct Groups(String);
 
@@ -69,17 +69,17 @@ impl Groups {
     fn add_layers(&mut self, sheet: &Sheet) {
         self.add_all(&[(0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER")]);
         self.add(70, sheet.layers.len());
-        for (number, layer) in sheet.layers.iter().enumerate() {
+        for (index, layer) in sheet.layers.iter().enumerate() {
             self.add_all(&[(0, "LAYER"), (2, &layer.name), (70, "0")]);
-            // Red is cut through; pockets are blue, magenta and so on.
-            self.add(62, if number == 0 { 1 } else { 4 + number });
+            // The colour: red for lines to cut through; blue, magenta and so on for pockets.
+            self.add(62, if index == 0 { 1 } else { 4 + index });
             self.add(6, "CONTINUOUS");
         }
         self.add_all(&[(0, "ENDTAB"), (0, "ENDSEC")]);
     }
 
-    fn add_line(&mut self, line: &Loop, layer: &str) {
-        if let Some((centre, radius)) = line.circle() {
+    fn add_loop(&mut self, outline_loop: &Loop, layer: &str) {
+        if let Some((centre, radius)) = outline_loop.circle() {
             self.add_all(&[(0, "CIRCLE"), (8, layer)]);
             self.add_point(10, centre.x, centre.y);
             self.add_real(40, radius);
@@ -88,7 +88,7 @@ impl Groups {
         self.add_all(&[(0, "POLYLINE"), (8, layer), (66, "1")]);
         self.add_point(10, 0.0, 0.0);
         self.add(70, 1);
-        for side in &line.sides {
+        for side in &outline_loop.sides {
             self.add_all(&[(0, "VERTEX"), (8, layer)]);
             self.add_point(10, side.from.x, side.from.y);
             self.add_real(42, side.bulge);

@@ -25,10 +25,10 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Divides a surface into triangles.
+    /// Divides the surface of a solid into triangles.
     ///
     /// # Panics
-    /// Never for a closed surface.
+    /// Never for a closed solid.
     pub fn of(solid: &Solid) -> Self {
         let mut builder = MeshBuilder {
             solid,
@@ -74,7 +74,7 @@ impl Mesh {
     }
 }
 
-/// A solid and the part of its mesh that is made so far.
+/// A solid and its mesh as built so far.
 struct MeshBuilder<'a> {
     solid: &'a Solid,
     mesh: Mesh,
@@ -134,14 +134,14 @@ impl MeshBuilder<'_> {
         trail
     }
 
-    /// Adds a horizontal face. Seen from below, it is triangulated as its mirror image.
+    /// Adds a horizontal face. A face that is seen from below is triangulated as its mirror image.
     fn add_flat(&mut self, face: &Face, is_below: bool) {
         let mut corners: Vec<usize> = Vec::new();
-        let mut starts = Vec::new();
+        let mut hole_starts = Vec::new();
         for edges in &face.loops {
             let trail = self.trail_of(edges);
             if !corners.is_empty() {
-                starts.push(corners.len());
+                hole_starts.push(corners.len());
             }
             corners.extend(trail);
         }
@@ -154,7 +154,7 @@ impl MeshBuilder<'_> {
             .iter()
             .flat_map(|(_, position)| [position.x, position.y])
             .collect();
-        let indices = earcutr::earcut(&coordinates, &starts, 2).expect("a loop has points");
+        let indices = earcutr::earcut(&coordinates, &hole_starts, 2).expect("a loop has points");
         let triangle_of = |corner_indices: &[usize]| {
             let [(a, p), (b, q), (c, r)] = [0, 1, 2].map(|i| positions[corner_indices[i]]);
             match (q - p).cross(r - p) < 0.0 {
@@ -171,14 +171,14 @@ impl MeshBuilder<'_> {
     fn add_wall(&mut self, face: &Face, side: Segment, end: Vector) {
         let levels_of = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
         let edges = &face.loops[0];
-        let is_upright = |&(edge, _): &(usize, bool)| {
+        let is_vertical = |&(edge, _): &(usize, bool)| {
             let [low, high] = levels_of(edge);
             low != high
         };
-        let first_upright = edges.iter().position(is_upright).unwrap_or(0);
-        let mut low = self.trail_of(&edges[..first_upright]);
-        low.push(self.first_or_last_corner(edges[first_upright], false));
-        let mut high = self.trail_of(&edges[first_upright + 1..edges.len() - 1]);
+        let first_vertical = edges.iter().position(is_vertical).unwrap_or(0);
+        let mut low = self.trail_of(&edges[..first_vertical]);
+        low.push(self.first_or_last_corner(edges[first_vertical], false));
+        let mut high = self.trail_of(&edges[first_vertical + 1..edges.len() - 1]);
         high.push(self.first_or_last_corner(edges[edges.len() - 1], false));
         high.reverse();
         let position_of = |&corner: &usize| {
@@ -218,8 +218,8 @@ impl MeshBuilder<'_> {
     }
 }
 
-/// Divides triangles at the corners that lie on their sides. The triangulation skips points in the middle of a
-/// straight line, but walls and other triangles have corners at these points.
+/// Divides triangles at the corners that lie on their sides. The triangulation skips points in the middle of a straight
+/// line, where walls and other triangles have corners.
 fn split_at_corners(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
     let mut index = 0;
     while index < triangles.len() {

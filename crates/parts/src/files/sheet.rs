@@ -79,7 +79,7 @@ fn pocket_layers(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) 
             if layers.iter().any(|layer| layer.loops.contains(hole)) {
                 continue;
             }
-            let is_open_in = |other: &Outline| is_open(other, hole);
+            let is_open_in = |layer_outline: &Outline| is_open(layer_outline, hole);
             let name = if outlines.iter().all(is_open_in) {
                 "CUT".to_owned()
             } else if outlines[index..].iter().all(is_open_in) {
@@ -87,7 +87,7 @@ fn pocket_layers(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) 
             } else {
                 let open_layer_count = outlines
                     .iter()
-                    .take_while(|other| is_open_in(other))
+                    .take_while(|layer_outline| is_open_in(layer_outline))
                     .count();
                 let depth = prisms[open_layer_count.max(index + 1) - 1].z[1] - low;
                 format!("POCKET_{depth:.2}_BOTTOM")
@@ -116,11 +116,11 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     probes.all(|point| !outline.contains(shrink(point)))
 }
 
-/// The smallest and the largest x and y of a sheet, with the arcs divided finely, mm.
+/// The smallest and the largest x and y of a sheet, mm, with each arc replaced by points along it.
 pub fn extent(sheet: &Sheet) -> [Vector; 2] {
-    let lines = sheet.layers.iter().flat_map(|layer| &layer.loops);
+    let loops = sheet.layers.iter().flat_map(|layer| &layer.loops);
     bounds(
-        lines
+        loops
             .flat_map(Loop::sides_with_end_points)
             .flat_map(|(side, to)| {
                 let arc = side.division_points(to, |_, _| 16);

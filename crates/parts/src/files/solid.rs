@@ -28,8 +28,8 @@ pub struct Solid {
     pub volume: f64,
 }
 
-/// An edge between two corners: at one height; upright if both corners are one point at two heights; along a slope
-/// if they are two points at two heights.
+/// An edge between two corners: at one height; vertical if both corners are one point at two heights; along a slope if
+/// they are two points at two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     /// The two corners, each by the indices of a point and of a height.
@@ -119,7 +119,7 @@ impl Solid {
 /// The outline of a layer and its pieces at a height.
 type OutlineAndPieces<'a> = (&'a Outline, &'a [Vec<Piece>]);
 
-/// The part of a solid that is made so far, and the indices of its edges.
+/// A solid as built so far, and the indices of its edges.
 #[derive(Default)]
 struct SolidBuilder {
     solid: Solid,
@@ -128,13 +128,13 @@ struct SolidBuilder {
     /// Middles of pieces, which distinguish two arcs between the same points.
     middles: Vec<Vector>,
     /// Index of the edge from a height to the next one, by lower point, upper point and upper level.
-    upright_indices: BTreeMap<(usize, usize, usize), usize>,
+    rising_edge_indices: BTreeMap<(usize, usize, usize), usize>,
 }
 
 /// Returns the index of a point in a list; adds the point if none is as near as [`SAME_POINT_MM`].
 fn find_or_add(points: &mut Vec<Vector>, point: Vector) -> usize {
     let is_near =
-        |other: &Vector| (*other - point).length_squared() < SAME_POINT_MM * SAME_POINT_MM;
+        |listed: &Vector| (*listed - point).length_squared() < SAME_POINT_MM * SAME_POINT_MM;
     points.iter().position(is_near).unwrap_or_else(|| {
         points.push(point);
         points.len() - 1
@@ -165,18 +165,18 @@ impl SolidBuilder {
                     add_intersections(side, to, *other_side, *other_end, &mut cuts);
                 }
                 let points = &mut self.solid.points;
-                let progress_and_index =
+                let position_and_index =
                     |point| (position_along(side, to, point), find_or_add(points, point));
                 let mut positions: Vec<(f64, usize)> =
-                    cuts.into_iter().map(progress_and_index).collect();
+                    cuts.into_iter().map(position_and_index).collect();
                 positions[0].0 = 0.0;
                 positions[1].0 = position_along(side, to, to).max(SAME_POINT_MM);
                 positions.sort_by(|a, b| a.0.total_cmp(&b.0));
                 positions.dedup_by_key(|(_, point)| *point);
-                let is_whole = positions.len() == 2;
+                let is_uncut = positions.len() == 2;
                 let piece_of = |pair: &[(f64, usize)]| {
                     let [(start, from), (end, to)] = [pair[0], pair[1]];
-                    let bulge = match is_whole {
+                    let bulge = match is_uncut {
                         true => side.bulge,
                         false => bulge_of(end - start, side.bulge),
                     };
@@ -222,21 +222,28 @@ impl SolidBuilder {
     }
 
     /// The outline of `a` less `b`, as pieces with the material on their left.
-    fn difference(&self, a: OutlineAndPieces, b: OutlineAndPieces) -> Vec<Piece> {
-        let find_in_b = |edge: usize| b.1.iter().flatten().find(|piece| piece.edge == edge);
+    fn difference(
+        &self,
+        (a, a_pieces): OutlineAndPieces,
+        (b, b_pieces): OutlineAndPieces,
+    ) -> Vec<Piece> {
+        let find_in_b = |edge: usize| b_pieces.iter().flatten().find(|piece| piece.edge == edge);
         let mut outline = Vec::new();
-        for piece in a.1.iter().flatten() {
+        for piece in a_pieces.iter().flatten() {
             let is_kept = match find_in_b(piece.edge) {
-                Some(same) => same.is_forward != piece.is_forward,
-                None => !b.0.contains(self.middles[piece.middle]),
+                Some(shared_piece) => shared_piece.is_forward != piece.is_forward,
+                None => !b.contains(self.middles[piece.middle]),
             };
             if is_kept {
                 outline.push(*piece);
             }
         }
-        for piece in b.1.iter().flatten() {
-            let is_shared = a.1.iter().flatten().any(|other| other.edge == piece.edge);
-            if !is_shared && a.0.contains(self.middles[piece.middle]) {
+        for piece in b_pieces.iter().flatten() {
+            let is_shared = a_pieces
+                .iter()
+                .flatten()
+                .any(|a_piece| a_piece.edge == piece.edge);
+            if !is_shared && a.contains(self.middles[piece.middle]) {
                 outline.push(Piece {
                     from: piece.to,
                     to: piece.from,
@@ -271,14 +278,14 @@ impl SolidBuilder {
                 holes.push(trail);
             }
         }
-        outer_faces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        outer_faces.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         for hole in holes {
             let inner_point = self.middles[hole[0].middle];
-            if let Some(face) = outer_faces
+            if let Some((_, _, loops)) = outer_faces
                 .iter_mut()
-                .find(|face| face.1.contains(inner_point))
+                .find(|(_, outline, _)| outline.contains(inner_point))
             {
-                face.2.push(hole);
+                loops.push(hole);
             }
         }
         for (_, _, loops) in outer_faces {
@@ -331,13 +338,16 @@ impl SolidBuilder {
             };
             let low_edges = low.iter().map(|piece| (piece.edge, piece.is_forward));
             let mut edges: Vec<_> = low_edges.collect();
-            edges.push((self.find_or_add_upright([to, high_to], level), true));
+            edges.push((self.find_or_add_rising_edge([to, high_to], level), true));
             edges.extend(
                 high.iter()
                     .rev()
                     .map(|piece| (piece.edge, !piece.is_forward)),
             );
-            edges.push((self.find_or_add_upright([from, high_from], level), false));
+            edges.push((
+                self.find_or_add_rising_edge([from, high_from], level),
+                false,
+            ));
             let surface = match upper_side.arc(upper_end) {
                 Some((_, radius)) if from != high_from => {
                     Surface::Slope(side, end, level - 1, radius)
@@ -349,12 +359,12 @@ impl SolidBuilder {
         }
     }
 
-    /// Returns the edge from a point at the previous height to a point at this one, upright or along a slope; adds
-    /// the edge if it is new.
-    fn find_or_add_upright(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
+    /// Returns the edge from a point at the previous height to a point at this one, vertical or along a slope; adds the
+    /// edge if it is new.
+    fn find_or_add_rising_edge(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
         *self
-            .upright_indices
+            .rising_edge_indices
             .entry((low, high, level))
             .or_insert_with(|| {
                 edges.push(Edge {

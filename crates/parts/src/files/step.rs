@@ -211,9 +211,9 @@ impl StepWriter {
         }
         let (shape_id, context_id) = (first_id + PRODUCT_SHAPE_INDEX, self.last_id);
         let frame = self.add_frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
-        let parts = format!("(#{frame},#{solid_id})");
+        let items = format!("(#{frame},#{solid_id})");
         let body_id = self.add(&format!(
-            "ADVANCED_BREP_SHAPE_REPRESENTATION('',{parts},#{context_id})"
+            "ADVANCED_BREP_SHAPE_REPRESENTATION('',{items},#{context_id})"
         ));
         self.add(&format!(
             "SHAPE_DEFINITION_REPRESENTATION(#{shape_id},#{body_id})"

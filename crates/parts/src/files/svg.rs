@@ -28,15 +28,19 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     for (Layer { name, loops }, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
         let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");
         let _ = writeln!(text, "<g id=\"{name}\" {style}>");
-        for line in loops {
-            let _ = match line
+        for outline_loop in loops {
+            let _ = match outline_loop
                 .circle()
                 .map(|(centre, radius)| (page_point_of(centre), radius))
             {
                 Some(((x, y), r)) => {
                     writeln!(text, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
                 }
-                None => writeln!(text, "<path d=\"{}\"/>", path_data(line, page_point_of)),
+                None => writeln!(
+                    text,
+                    "<path d=\"{}\"/>",
+                    path_data(outline_loop, page_point_of)
+                ),
             };
         }
         text.push_str("</g>\n");
@@ -45,12 +49,12 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     text
 }
 
-/// A loop as the data of a path.
-fn path_data(line: &Loop, page_point_of: impl Fn(Vector) -> (f64, f64)) -> String {
+/// The path data of a loop.
+fn path_data(outline_loop: &Loop, page_point_of: impl Fn(Vector) -> (f64, f64)) -> String {
     let mut data = String::new();
-    for (number, (side, to)) in line.sides_with_end_points().enumerate() {
+    for (index, (side, to)) in outline_loop.sides_with_end_points().enumerate() {
         let (x, y) = page_point_of(side.from);
-        if number == 0 {
+        if index == 0 {
             let _ = write!(data, "M{x:.6} {y:.6}");
         }
         let (x, y) = page_point_of(to);

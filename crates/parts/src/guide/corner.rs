@@ -1,9 +1,8 @@
 //! One corner of the robot, to be printed first: a seat for one servo with the pivots of
 //! its leg, the servo's link, the leg, its strut and its foot.
 //!
-//! After three hours of printing, it shows what all parts together would show only after
-//! fifteen: whether the servo fits its opening and the horn its link, whether the bearings
-//! turn without play, and how much a foot yields.
+//! It takes three hours to print and shows what all parts together would show only after fifteen: whether the servo
+//! fits its opening and the horn its link, whether the bearings turn without play, and how much a foot yields.
 
 use crate::bodies::assembly::Assembly;
 use crate::bodies::builder::Builder;
@@ -22,9 +21,9 @@ impl Assembly {
         let is_in_corner = |body: &str| {
             let body = self.body(body);
             body.is_some_and(|body| {
-                let is_no_coupler = !matches!(body.mount, Mount::Coupler(_));
+                let is_coupler = matches!(body.mount, Mount::Coupler(_));
                 let has_suffix = [name, leg].iter().any(|suffix| body.name.ends_with(suffix));
-                is_no_coupler && has_suffix && body.kind.is_printed()
+                !is_coupler && has_suffix && body.kind.is_printed()
             })
         };
         for mut part in self.parts() {

@@ -15,9 +15,9 @@ const LINE_HEIGHT: f64 = 16.0;
 /// SVG attributes of the labels' text.
 const FONT_ATTRIBUTES: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
-/// A line through points on the page.
-pub(super) type Trail = Vec<(f64, f64)>;
-/// A label, and before it the point on the page that it names.
+/// A line through points of the drawing, mm, before it is scaled to the page.
+pub(super) type Polyline = Vec<(f64, f64)>;
+/// The point of the drawing that a label names, mm, and the label.
 pub(super) type PlacedLabel<'a> = ((f64, f64), &'a Label);
 
 /// A label in a picture.
@@ -58,21 +58,16 @@ impl Frame {
     }
 }
 
-/// A drawing: shapes in the order in which they are drawn.
+/// A drawing, as its shapes in the order in which they are drawn.
 #[derive(Default)]
-pub(super) struct Ink {
+pub(super) struct Drawing {
     /// The colour and the loops of each shape, and true if its edge is drawn.
-    shapes: Vec<(String, Vec<Trail>, bool)>,
+    shapes: Vec<(String, Vec<Polyline>, bool)>,
 }
 
-impl Ink {
+impl Drawing {
     /// Draws a polygon over everything drawn so far; loops within its outer loop are holes.
-    pub(super) fn draw_polygon(
-        &mut self,
-        loops: &[Vec<(f64, f64)>],
-        colour: [f64; 3],
-        has_edge: bool,
-    ) {
+    pub(super) fn draw_polygon(&mut self, loops: &[Polyline], colour: [f64; 3], has_edge: bool) {
         let [r, g, b] = colour.map(|channel| channel.clamp(0.0, 255.0).round() as u8);
         self.shapes
             .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), has_edge));
@@ -89,23 +84,23 @@ impl Ink {
         let scale = drawing_width / (high.0 - low.0);
         let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
         let left_offset = MARGIN + side_margin;
-        // Each colour is named once, and points are given in whole tenths of a pixel from the
-        // previous one. That makes the text four times shorter.
+        // Each colour is named once, and points are given in whole tenths of a pixel from the previous one. That makes
+        // the text a quarter as long.
         let mut styles: Vec<(&str, bool)> = Vec::new();
         let mut paths = String::new();
         let tenths_of = |x: f64, offset: f64| (10.0 * (x * scale + offset)).round() as i64;
         for (colour, loops, has_edge) in &self.shapes {
             let style = (colour.as_str(), *has_edge);
-            let style_index = styles.iter().position(|other| *other == style);
+            let style_index = styles.iter().position(|listed| *listed == style);
             let class = style_index.unwrap_or(styles.len());
             if style_index.is_none() {
                 styles.push(style);
             }
             let mut data = String::new();
             let mut position = (0, 0);
-            for line in loops {
+            for page_loop in loops {
                 let mut start = None;
-                for (x, y) in line {
+                for (x, y) in page_loop {
                     let point = (
                         tenths_of(x - low.0, left_offset),
                         tenths_of(y - low.1, MARGIN),
@@ -182,8 +177,8 @@ impl Ink {
 fn write_column(text: &mut String, labels: &[PlacedLabel], is_left: bool, width: f64, height: f64) {
     let count = labels.len() as f64;
     let mut min_y = LINE_HEIGHT;
-    for (number, ((x, y), label)) in labels.iter().enumerate() {
-        let max_y = height - (count - number as f64) * LINE_HEIGHT + 8.0;
+    for (index, ((x, y), label)) in labels.iter().enumerate() {
+        let max_y = height - (count - index as f64) * LINE_HEIGHT + 8.0;
         let text_y = (y + 4.0).min(max_y).max(min_y);
         min_y = text_y + LINE_HEIGHT;
         let (edge, end, anchor) = match is_left {

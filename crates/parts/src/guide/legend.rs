@@ -12,8 +12,8 @@ use crate::guide::picture::PictureBody;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
-/// A body's name in the guide, such as `M3 x 12` for a screw, or noun and mark for a printed
-/// part. `None` for a lead, and for a printed body that is in none of `parts`.
+/// A body's name in the guide, such as `M3 x 12` for a screw, or a noun and the engraved mark for a printed part, such
+/// as `link, marked 13`. `None` for a lead, and for a printed body that is in none of `parts`.
 pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),
@@ -32,6 +32,7 @@ pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
             let part = parts
                 .iter()
                 .find(|part| part.body_names.contains(&body.name))?;
+            // The noun ends before the names of servos or legs: `link` of `link A1 A3`.
             let name = part.name.split(" A").next()?;
             let noun = name.split(['L', 'R']).next()?.trim();
             match part.mark.is_empty() {
@@ -57,15 +58,27 @@ pub fn counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     texts.collect()
 }
 
-/// Labels for the bodies in a picture that are not grey: each name once, with its count, at the
-/// body nearest to the front left corner.
+/// A label for all bodies of one name, at the body that is nearest to [`FRONT_LEFT_CORNER`].
+struct CountedLabel {
+    /// Distance of the labelled body from the corner, mm.
+    distance: f64,
+    /// The number of bodies of this name.
+    count: usize,
+    label: Label,
+}
+
+/// The point near which the labelled body of each name is chosen: in front of the robot on its left, chassis frame, mm.
+const FRONT_LEFT_CORNER: Vector = Vector::new(-60.0, 80.0);
+
+/// Labels for the bodies in a picture that are not grey: each name once, with its count, at the body nearest to
+/// [`FRONT_LEFT_CORNER`].
 pub fn part_labels(
     assembly: &Assembly,
     parts: &[Part],
     picture_bodies: &[PictureBody],
     pose: &Solution,
 ) -> Vec<Label> {
-    let mut labels_by_name: BTreeMap<String, (f64, usize, Label)> = BTreeMap::new();
+    let mut labels_by_name: BTreeMap<String, CountedLabel> = BTreeMap::new();
     for PictureBody { body, lift, .. } in picture_bodies
         .iter()
         .filter(|picture_body| !picture_body.is_grey)
@@ -76,24 +89,27 @@ pub fn part_labels(
         let position = assembly
             .place(body.mount, pose)
             .map(prism.filled_shapes[0].middle());
-        let distance = (position - Vector::new(-60.0, 80.0)).length();
+        let distance = (position - FRONT_LEFT_CORNER).length();
         let label = Label {
             position,
             z: (body.z()[0] + body.z()[1]) / 2.0 + lift,
             text: name.clone(),
             is_beside: true,
         };
-        let entry = labels_by_name
-            .entry(name)
-            .or_insert((distance, 0, label.clone()));
-        entry.1 += 1;
-        if distance < entry.0 {
-            (entry.0, entry.2) = (distance, label);
+        let entry = labels_by_name.entry(name).or_insert_with(|| CountedLabel {
+            distance,
+            count: 0,
+            label: label.clone(),
+        });
+        entry.count += 1;
+        if distance < entry.distance {
+            (entry.distance, entry.label) = (distance, label);
         }
     }
-    let labels = labels_by_name.into_values().map(|(_, count, mut label)| {
-        label.text.insert_str(0, &format!("{count} x "));
-        label
+    let labels = labels_by_name.into_values().map(|mut entry| {
+        let count_text = format!("{} x ", entry.count);
+        entry.label.text.insert_str(0, &count_text);
+        entry.label
     });
     labels.collect()
 }

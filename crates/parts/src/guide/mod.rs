@@ -1,6 +1,6 @@
 //! The guide to building the robot, step by step, with pictures of the model.
 //!
-//! The order of the steps lets a screwdriver reach every screw, and tests the electronics before anything can jam.
+//! In the order of the steps a screwdriver reaches every screw, and the electronics are tested before anything can jam.
 
 pub(crate) mod corner;
 pub(crate) mod documents;
@@ -97,8 +97,8 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut added_bodies: Vec<&Body> = Vec::new();
     for (number, step) in (1..).zip(&steps) {
-        let is_already_on = |body: &Body| added_bodies.iter().any(|old| old.name == body.name);
-        let is_new = |body: &&Body| step.adds(body) && !is_already_on(body);
+        let is_added = |body: &Body| added_bodies.iter().any(|added| added.name == body.name);
+        let is_new = |body: &&Body| step.adds(body) && !is_added(body);
         let new_bodies: Vec<&Body> = assembly.bodies().iter().filter(is_new).collect();
         let _ = writeln!(
             text,
@@ -113,7 +113,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             "Take {}.\n",
             legend::counted_names(&new_bodies, &parts).join("; ")
         );
-        let poses_here = access_poses
+        let step_poses = access_poses
             .iter()
             .filter(|access_pose| access_pose.step == number);
         let is_at_bench = step
@@ -121,7 +121,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             .iter()
             .any(|stage| stage.turning_place == TurningPlace::Bench);
         let turns =
-            poses_here.map(|access_pose| turns_in_words(assembly, access_pose, is_at_bench));
+            step_poses.map(|access_pose| turns_in_words(assembly, access_pose, is_at_bench));
         let turns: Vec<_> = turns.collect();
         if !turns.is_empty() {
             let _ = writeln!(
@@ -130,12 +130,12 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
                 turns.join("; ")
             );
         }
-        let scene = Scene {
+        let scene = StepScene {
             assembly,
             parts: &parts,
             pose,
             step,
-            old_bodies: &added_bodies,
+            earlier_bodies: &added_bodies,
             new_bodies: &new_bodies,
         };
         for (view_name, caption, drawing) in scene.pictures() {
@@ -167,16 +167,16 @@ fn drilling_text(parts: &[Part]) -> String {
 }
 
 /// A step of the guide, the bodies that were added before it, and those that it adds.
-struct Scene<'a> {
+struct StepScene<'a> {
     assembly: &'a Assembly,
     parts: &'a [Part],
     pose: &'a Solution,
     step: &'a Step,
-    old_bodies: &'a [&'a Body],
+    earlier_bodies: &'a [&'a Body],
     new_bodies: &'a [&'a Body],
 }
 
-impl Scene<'_> {
+impl StepScene<'_> {
     /// The pictures of the step, each as a word for the file's name, a caption, and the drawing as SVG.
     fn pictures(&self) -> Vec<(&'static str, &'static str, String)> {
         let view = View {
@@ -242,8 +242,8 @@ impl Scene<'_> {
         has_labels: bool,
         is_highlighted: fn(&Body) -> bool,
     ) -> String {
-        let old_bodies = self
-            .old_bodies
+        let earlier_bodies = self
+            .earlier_bodies
             .iter()
             .map(|body| PictureBody::at_place(body, true));
         let new_bodies = self.new_bodies.iter().map(|&body| PictureBody {
@@ -251,7 +251,7 @@ impl Scene<'_> {
             lift: lift * (self.step.lift)(body),
             is_grey: !is_highlighted(body),
         });
-        let drawn_bodies: Vec<_> = old_bodies.chain(new_bodies).collect();
+        let drawn_bodies: Vec<_> = earlier_bodies.chain(new_bodies).collect();
         let mut labels: Vec<Label> = legend::servo_and_end_labels(self.assembly, self.pose);
         if has_labels {
             labels.extend(legend::part_labels(

@@ -1,9 +1,9 @@
 //! A perspective drawing of the robot, or of some of its bodies.
 //!
-//! Every body is a stack of flat layers, so the drawing order is known without a search. The space is cut into slices
-//! at every height at which a layer begins or ends, and the slices are drawn from the lowest to the highest. In each
-//! slice, the walls are drawn from far to near and then the tops: a wall never rises above its own slice, so it
-//! cannot hide a top of that slice.
+//! Every body is a stack of flat layers, so the drawing order is known without a search. Space is cut into slices at
+//! every height at which a layer begins or ends, and the slices are drawn from the lowest to the highest. In each
+//! slice, the walls are drawn from far to near and then the tops: a wall never rises above its own slice, so it cannot
+//! hide a top of that slice.
 
 use lizard_kinematics::{Solution, Vector, sin_cos};
 
@@ -11,7 +11,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::layers::outline::{Loop, Outline};
 
-use super::ink::{Frame, Ink, Label, Trail};
+use super::ink::{Drawing, Frame, Label, Polyline};
 
 /// A body in a picture.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +121,7 @@ impl Eye {
 }
 
 /// A wall: its distance from the eye, its outline and its colour.
-type Wall = (f64, Trail, [f64; 3]);
+type Wall = (f64, Polyline, [f64; 3]);
 
 /// A layer of a body in the picture.
 struct Layer {
@@ -150,28 +150,31 @@ pub fn picture(
         }
     }
     let heights = merge_heights(&mut layers);
-    let mut ink = Ink::default();
+    let mut drawing = Drawing::default();
     for slice in heights.windows(2) {
         let [low, high] = [slice[0], slice[1]];
         let covers_slice = |layer: &&Layer| layer.z[0] < low + 1e-6 && layer.z[1] > high - 1e-6;
         let slice_layers = || layers.iter().filter(covers_slice);
         let mut walls: Vec<Wall> = Vec::new();
         for layer in slice_layers() {
-            for line in &layer.loops {
-                layer.add_walls(line, &eye, [low, high], &mut walls);
+            for layer_loop in &layer.loops {
+                layer.add_walls(layer_loop, &eye, [low, high], &mut walls);
             }
         }
-        walls.sort_by(|a, b| b.0.total_cmp(&a.0));
+        walls.sort_by(|(a, ..), (b, ..)| b.total_cmp(a));
         for (_, points, colour) in walls {
-            ink.draw_polygon(&[points], colour, false);
+            drawing.draw_polygon(&[points], colour, false);
         }
         for layer in slice_layers() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
-                let page_points_of = |line: &Vec<Vector>| {
-                    line.iter().map(|point| eye.project(*point, high)).collect()
+                let page_points_of = |layer_loop: &Vec<Vector>| {
+                    layer_loop
+                        .iter()
+                        .map(|point| eye.project(*point, high))
+                        .collect()
                 };
-                let loops: Vec<Trail> = layer.loops.iter().map(page_points_of).collect();
-                ink.draw_polygon(&loops, layer.colour, true);
+                let loops: Vec<Polyline> = layer.loops.iter().map(page_points_of).collect();
+                drawing.draw_polygon(&loops, layer.colour, true);
             }
         }
     }
@@ -180,8 +183,8 @@ pub fn picture(
         .iter()
         .filter(|layer| !view.is_close_up || !layer.is_grey);
     let points = framed_layers.flat_map(|layer| {
-        let line_points = layer.loops.iter().flatten();
-        line_points.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
+        let loop_points = layer.loops.iter().flatten();
+        loop_points.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
     });
     let page_point_of = |label: &Label| match view.is_from_below {
         true => eye.project(turn_over_point(label.position), -label.z),
@@ -191,7 +194,7 @@ pub fn picture(
         .iter()
         .map(|label| (page_point_of(label), label))
         .collect();
-    ink.into_svg(
+    drawing.into_svg(
         view.width,
         &Frame::around(points, view.is_close_up),
         &placed_labels,
@@ -230,12 +233,14 @@ fn layers_of(assembly: &Assembly, picture_bodies: &[PictureBody], pose: &Solutio
         let colour = colour_of(body, *is_grey);
         for prism in &body.prisms {
             let outline = Outline::of(prism);
-            let is_drawn = |line: &&Loop| {
-                let circle = line.circle().filter(|_| *is_grey || *lift == 0.0);
-                !circle.is_some_and(|(_, radius)| radius < HIDDEN_HOLE_RADIUS && line.area() < 0.0)
+            let is_drawn = |outline_loop: &&Loop| {
+                let circle = outline_loop.circle().filter(|_| *is_grey || *lift == 0.0);
+                !circle.is_some_and(|(_, radius)| {
+                    radius < HIDDEN_HOLE_RADIUS && outline_loop.area() < 0.0
+                })
             };
-            let placed_points_of = |line: &Loop| {
-                points_of(line)
+            let placed_points_of = |outline_loop: &Loop| {
+                points_of(outline_loop)
                     .into_iter()
                     .map(|point| placement.map(point))
                     .collect()
@@ -256,9 +261,9 @@ fn layers_of(assembly: &Assembly, picture_bodies: &[PictureBody], pose: &Solutio
 }
 
 /// The points of a loop, with arcs divided into chords.
-fn points_of(line: &Loop) -> Vec<Vector> {
+fn points_of(outline_loop: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
-    for (side, to) in line.sides_with_end_points() {
+    for (side, to) in outline_loop.sides_with_end_points() {
         points.push(side.from);
         points.extend(side.division_points(to, |_, angle| (angle / MAX_CHORD_ANGLE).ceil() as u32));
     }
@@ -266,29 +271,35 @@ fn points_of(line: &Loop) -> Vec<Vector> {
 }
 
 impl Layer {
-    /// Turns the layer over about the robot's long axis; its lines keep the material on their left.
+    /// Turns the layer over about the robot's long axis; its loops keep the material on their left.
     fn turn_over(&mut self) {
-        for line in &mut self.loops {
-            for point in line.iter_mut() {
+        for layer_loop in &mut self.loops {
+            for point in layer_loop.iter_mut() {
                 *point = turn_over_point(*point);
             }
-            line.reverse();
+            layer_loop.reverse();
         }
         let [low, high] = self.z;
         self.z = [-high, -low];
     }
 
-    /// Adds the walls of a loop that the eye sees; adjacent walls of equal shade become one.
-    fn add_walls(&self, line: &[Vector], eye: &Eye, [low, high]: [f64; 2], walls: &mut Vec<Wall>) {
-        let n = line.len();
+    /// Adds those walls of a loop that the eye sees; adjacent walls of equal shade become one.
+    fn add_walls(
+        &self,
+        layer_loop: &[Vector],
+        eye: &Eye,
+        [low, high]: [f64; 2],
+        walls: &mut Vec<Wall>,
+    ) {
+        let n = layer_loop.len();
         let shade_of = |i: usize| {
-            let (a, b) = (line[i], line[(i + 1) % n]);
+            let (a, b) = (layer_loop[i], layer_loop[(i + 1) % n]);
             let normal = (b - a).rotated_right();
-            let is_seen = normal.dot(eye.position() - a) > 0.0;
+            let is_visible = normal.dot(eye.position() - a) > 0.0;
             let length = normal.length();
             // The light comes from the eye's left.
             let light = (eye.away + eye.right * -0.8).dot(normal) / (1.3 * length.max(1e-9));
-            is_seen.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
+            is_visible.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
         };
         let mut i = 0;
         while i < n {
@@ -296,9 +307,9 @@ impl Layer {
                 i += 1;
                 continue;
             };
-            let mut chain = vec![line[i]];
+            let mut chain = vec![layer_loop[i]];
             while i < n && shade_of(i) == Some(shade) {
-                chain.push(line[(i + 1) % n]);
+                chain.push(layer_loop[(i + 1) % n]);
                 i += 1;
             }
             let distances = chain.iter().map(|point| (eye.position() - *point).length());

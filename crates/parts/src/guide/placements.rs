@@ -1,10 +1,10 @@
 //! The placements of all bodies as JSON, for programs.
 //!
-//! Lengths are in mm, in the chassis frame, with z up from the top of the plate. The file of
-//! a printed part has the part as it is printed. To put it in place, turn it over if `flipped`
-//! is true (x, y, z to x, -y, -z), lift it by `lift`, turn it about the z axis by `turn` (deg,
-//! counter-clockwise) and shift it by `at`. Bought bodies have `solids`: upright prisms over
-//! convex outlines, already in place. `drill` lists the holes to be drilled in a printed part.
+//! Lengths are in mm, in the chassis frame, with z up from the top of the plate. The file of a printed part has the
+//! part as it is printed. To put it in place, turn it over if `flipped` is true (x, y, z to x, -y, -z), lift it by
+//! `lift`, turn it about the z axis by `turn` (deg, counter-clockwise) and shift it by `at`. Bought bodies have
+//! `solids`: vertical prisms over convex outlines, already in place. `drill` lists the holes to be drilled in a printed
+//! part.
 
 use lizard_kinematics::{Solution, Vector};
 use serde::Serialize;
@@ -71,7 +71,7 @@ struct Screw {
     turned: Vec<usize>,
 }
 
-/// An upright prism between two heights, and the holes in it.
+/// A vertical prism between two heights, and the holes in it.
 #[derive(Serialize)]
 struct Prism {
     z: [f64; 2],

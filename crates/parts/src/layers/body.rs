@@ -230,14 +230,14 @@ impl Body {
 }
 
 /// The end of the robot that a servo drives, and the servo's index at that end: 0 for left, 1 for right.
-pub(crate) fn end_and_hand(servo: usize) -> (End, usize) {
+pub(crate) fn end_and_index(servo: usize) -> (End, usize) {
     let end = End::of_servo(servo);
     (end, usize::from(end.servos()[1] == servo))
 }
 
 /// Length of the coupler on a servo's crank, mm.
 pub(crate) fn coupler_length(robot: &Robot, servo: usize) -> f64 {
-    let (end, hand) = end_and_hand(servo);
+    let (end, index) = end_and_index(servo);
     let bars = robot.lizard().end(end);
-    [bars.left_coupler_length, bars.right_coupler_length][hand]
+    [bars.left_coupler_length, bars.right_coupler_length][index]
 }

@@ -86,7 +86,7 @@ pub enum Fitting {
     /// The battery's plug and its counterpart.
     BatteryPlug,
     /// The plug in the board's barrel jack.
-    RoundPlug,
+    BarrelPlug,
     /// A strap that holds the battery.
     Strap,
     /// The space reserved for an optional radio module.
@@ -136,7 +136,7 @@ impl Fitting {
         Self::SignalStrip,
         Self::Resistor,
         Self::Alarm,
-        Self::RoundPlug,
+        Self::BarrelPlug,
         Self::RadioSpace,
     ];
 
@@ -263,7 +263,7 @@ impl Fitting {
                     Example::from_shops("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
                 ],
             },
-            Self::RoundPlug => FittingFacts {
+            Self::BarrelPlug => FittingFacts {
                 name: "barrel plug",
                 grams: 4.0,
                 size: [15.0, 42.0, 15.0],
@@ -323,7 +323,7 @@ impl Fitting {
             // A second strip is cut into the supply, signal and plus pieces.
             Self::SupplyStrip => Self::GroundStrip.shopping_list_row(),
             Self::SignalStrip | Self::PlusTerminal | Self::RadioSpace => String::new(),
-            Self::Resistor | Self::Strap | Self::BatteryPlug | Self::RoundPlug => {
+            Self::Resistor | Self::Strap | Self::BatteryPlug | Self::BarrelPlug => {
                 article.to_owned()
             }
             Self::Capacitor => format!("{article}, at most {x} mm thick and {y} mm long"),

@@ -88,7 +88,7 @@ pub enum Clash {
     Narrow(Box<Clearance>),
     /// Two parts that may overlap at poses near the guard's limits, or just beyond.
     #[error("{0}")]
-    Unsure(Box<NearestPair>),
+    Unproved(Box<NearestPair>),
 }
 
 impl fmt::Display for NearestPair {
@@ -112,7 +112,7 @@ impl NearestPair {
         match &self.seen {
             Some(seen) if seen.mm < min_mm.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
             Some(seen) if seen.mm < min_mm => Some(Clash::Narrow(Box::new(seen.clone()))),
-            _ if self.proved < min_mm => Some(Clash::Unsure(Box::new(self.clone()))),
+            _ if self.proved < min_mm => Some(Clash::Unproved(Box::new(self.clone()))),
             _ => None,
         }
     }
@@ -256,7 +256,7 @@ impl<'a> Questions<'a> {
             }
             // One clash is enough to refuse. Questions about parts that barely fit take long.
             match clash {
-                Some(Clash::Unsure(_)) => max_regions = search::MAX_REGIONS / 10,
+                Some(Clash::Unproved(_)) => max_regions = search::MAX_REGIONS / 10,
                 Some(_) if !self.has_clash => break,
                 _ => {}
             }

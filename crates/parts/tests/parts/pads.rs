@@ -17,7 +17,7 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
     let assembly = assembly(GRAIN_ROBOT, "");
     let half_width = assembly.robot().parts().pad.width / 2.0;
     let parts = assembly.parts();
-    let is_pad = |part: &&Part| part.is_rubbery;
+    let is_pad = |part: &&Part| part.is_flexible;
     let [pad] = parts.iter().filter(is_pad).collect::<Vec<_>>()[..] else {
         panic!("one kind of pad");
     };
