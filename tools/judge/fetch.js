@@ -1,6 +1,6 @@
 // Installs the packages of a folder's package-lock.json in its node_modules, as `npm ci --ignore-scripts` does:
 // node fetch.js [FOLDER]; the default is the judge's folder. Debian's Node comes without npm, and Debian's package of
-// npm needs 390 other packages, while `make test` needs one. A package that is present in the right version stays.
+// npm needs 390 other packages, while `make test` needs one. A package that is installed in the right version stays.
 // Packages for other kinds of machine are left out.
 import { createHash } from 'node:crypto';
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
@@ -33,11 +33,11 @@ function* readTar(tar) {
   }
 }
 
-/** True if a package for these systems, processors and C libraries is for this machine. */
+/** True if a package with these systems, processors and C libraries runs on this machine. */
 function isForThisMachine({ os, cpu, libc }) {
-  const glibc = process.report.getReport().header.glibcVersionRuntime !== undefined;
+  const hasGlibc = process.report.getReport().header.glibcVersionRuntime !== undefined;
   const allows = (list, value) => !list || [list].flat().includes(value);
-  return allows(os, process.platform) && allows(cpu, process.arch) && allows(libc, glibc ? 'glibc' : 'musl');
+  return allows(os, process.platform) && allows(cpu, process.arch) && allows(libc, hasGlibc ? 'glibc' : 'musl');
 }
 
 /** Returns a package's address in the registry, for a lock file without addresses. */
@@ -65,7 +65,7 @@ async function install(path, entry) {
   const url = entry.resolved ?? registryUrl(path, version);
   const archive = await download(url);
   const checksum = `sha512-${createHash('sha512').update(archive).digest('base64')}`;
-  if (checksum !== integrity) throw new Error(`${url} is not what package-lock.json says: ${checksum}`);
+  if (checksum !== integrity) throw new Error(`${url} differs from package-lock.json: ${checksum}`);
   const newFolder = `${folder}.new`;
   rmSync(newFolder, { recursive: true, force: true });
   for (const { name, bytes, mode } of readTar(gunzipSync(archive))) {

@@ -3,9 +3,9 @@
 // src/script.js explains SCRIPT. Prints these lines; all cycles count from power-on:
 //   pulse <pin> <rise> <width>   a pin was high; pins 14 to 19 are A0 to A5
 //   sent <cycle> <hex byte>      the UNO has sent a byte; the cycle is the end of its stop bit
-//   eeprom <2048 hex digits>     at the end
+//   eeprom <2048 hex digits>     the EEPROM at the end
 //   cpu <ms>                     processor time of the simulation
-// A program that needs more than the judge can simulate ends the run with a sentence and exit code 1.
+// If the program does something that the judge cannot simulate, the run ends with an error message and exit code 1.
 import { readFileSync } from 'node:fs';
 
 import { corrections } from './src/corrections/index.js';

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""Shows in MuJoCo's window how a robot walks that `lizard model` has written.
+"""Shows the walk of a robot that `lizard model` has written, in MuJoCo's window.
 
 Usage: target/physics/bin/python tools/physics/view.py out/walk.xml
-The file is to be written with --drive; the last cycle is repeated until the window is
-closed. Space pauses and resumes. `make physics` installs MuJoCo; so does
+Write the file with --drive. The measured cycles are repeated until the window is closed. Space pauses and resumes. `make physics` installs MuJoCo; so does
 `python3 -m pip install -r tools/physics/requirements.txt`.
 """
 
@@ -14,8 +13,8 @@ try:
     import mujoco.viewer
 
     from walk import Walk
-except ImportError as missing:
-    sys.exit(f"view.py: {missing}; `make physics` installs MuJoCo into target/physics")
+except ImportError as error:
+    sys.exit(f"view.py: {error}; `make physics` installs MuJoCo into target/physics")
 
 SPACE = 32
 
@@ -25,31 +24,31 @@ def main():
         sys.exit(__doc__)
     try:
         walk = Walk(sys.argv[1])
-    except ValueError as wrong:
-        sys.exit(f"view.py: {sys.argv[1]}: {' '.join(str(wrong).split())}")
+    except ValueError as error:
+        sys.exit(f"view.py: {sys.argv[1]}: {' '.join(str(error).split())}")
     if walk.frames == 0:
         print("view.py: the servos do not move; write the file with --drive GAIT")
-    stopped = False
+    is_paused = False
 
-    def key(code):
-        nonlocal stopped
-        stopped ^= code == SPACE
+    def handle_key(code):
+        nonlocal is_paused
+        is_paused ^= code == SPACE
 
     with mujoco.viewer.launch_passive(
-        walk.model, walk.data, key_callback=key, show_left_ui=False, show_right_ui=False
+        walk.model, walk.data, key_callback=handle_key, show_left_ui=False, show_right_ui=False
     ) as window:
         with window.lock():
             window.cam.type = mujoco.mjtCamera.mjCAMERA_TRACKING
             window.cam.trackbodyid = walk.model.body("chassis").id
             window.cam.distance = 0.45
-        frame = 1 / 60
+        frame_time = 1 / 60
         while window.is_running():
-            began = time.monotonic()
-            until = walk.data.time + frame
-            while walk.data.time < until and not stopped:
+            frame_start = time.monotonic()
+            frame_end = walk.data.time + frame_time
+            while walk.data.time < frame_end and not is_paused:
                 walk.step()
             window.sync()
-            time.sleep(max(0.0, frame - (time.monotonic() - began)))
+            time.sleep(max(0.0, frame_time - (time.monotonic() - frame_start)))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 //! Generator of the JavaScript and the types for a WebAssembly module of the page: `bindgen MODULE FOLDER NAME`.
 //!
-//! The command wasm-bindgen does the same, but must have the same version as the crate in the module. Here one lock
-//! file sets both versions.
+//! The command wasm-bindgen does the same, but must have the version of the crate in the module. Here one lock file
+//! sets both versions.
 
 use std::env::args;
 use std::error::Error;
@@ -10,7 +10,7 @@ use wasm_bindgen_cli_support::Bindgen;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [_, module, folder, name] = &args().collect::<Vec<_>>()[..] else {
-        return Err("bindgen wants MODULE FOLDER NAME".into());
+        return Err("usage: bindgen MODULE FOLDER NAME".into());
     };
     let mut bindgen = Bindgen::new();
     bindgen.input_path(module).out_name(name).web(true)?;

@@ -15,7 +15,7 @@ pub enum Action {
     Line(&'static str),
     /// A line arrives in which noise has changed one byte.
     GarbledLine,
-    /// Lines are sent at this rate from now on.
+    /// Lines are sent at this baud rate from now on.
     SenderRate(BaudRate),
     /// Main performs one step: its most urgent task.
     MainStep,
@@ -28,7 +28,7 @@ pub enum Action {
     /// If true, the supply is weak from now on: three awake servos cause a brown-out. If false, the supply is strong
     /// again.
     WeakSupply(bool),
-    /// A frame passes in which an edge of a pulse comes late.
+    /// A frame passes in which an edge of a pulse is late.
     LateEdge,
     /// A frame passes in which the stack grows into the data.
     StackOverflow,
@@ -97,7 +97,7 @@ impl Action {
         actions.extend(LINES.map(Self::Line));
         actions.extend(BaudRate::ALL.map(Self::SenderRate));
         actions.extend(other_words.map(|word| Self::Line(word.example())));
-        // The board took over the last frame 16 ms ago. During these stalls main misses zero, one, three or five
+        // The last frame was handed to the board 16 ms ago. During these stalls main misses zero, one, three or five
         // frames; or the watchdog ends the pulses; or the watchdog resets the processor.
         actions.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         actions.extend([5_000, 4_100, 3_900, 3_500].map(Self::SupplyMv));
@@ -115,22 +115,27 @@ impl Action {
 impl fmt::Display for Action {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Line(line) => write!(f, "say `{line}`"),
+            Self::Line(line) => write!(f, "send `{line}`"),
             Self::MainStep => f.write_str("one step of main"),
-            Self::SenderRate(rate) => write!(f, "lines come at {} baud from now on", rate.baud()),
-            Self::GarbledLine => f.write_str("noise within `walk`"),
+            Self::SenderRate(rate) => {
+                write!(f, "lines are sent at {} baud from now on", rate.baud())
+            }
+            Self::GarbledLine => f.write_str("noise changes a byte of `walk`"),
             Self::Frames(1) => f.write_str("a frame"),
             Self::Frames(count) => write!(f, "{count} frames"),
             Self::Stall(ms) => write!(f, "main does nothing for {ms} ms"),
             Self::SupplyMv(mv) => write!(f, "the supply is at {mv} mV"),
             Self::WeakSupply(true) => f.write_str("the supply becomes too weak for three servos"),
-            Self::WeakSupply(false) => f.write_str("the supply bears four servos again"),
-            Self::LateEdge => f.write_str("a frame in which an edge comes late"),
+            Self::WeakSupply(false) => f.write_str("the supply can power four servos again"),
+            Self::LateEdge => f.write_str("a frame in which an edge is late"),
             Self::StackOverflow => f.write_str("a frame in which the stack reaches the data"),
             Self::Reset(cause) => write!(f, "reset: {cause:?}"),
             Self::PowerLoss(None) => f.write_str("power is lost and comes back"),
             Self::PowerLoss(Some(byte)) => {
-                write!(f, "power is lost in a write, the byte is {byte:#04x}")
+                write!(
+                    f,
+                    "power is lost during a write, the byte becomes {byte:#04x}"
+                )
             }
             Self::Contact(pin, is_closed) => {
                 let contact = if *pin == BUTTON_PIN { "button" } else { "nose" };
@@ -140,8 +145,8 @@ impl fmt::Display for Action {
                     if *is_closed { "closes" } else { "opens" }
                 )
             }
-            Self::HeldOutput(true) => f.write_str("nobody listens any more"),
-            Self::HeldOutput(false) => f.write_str("somebody listens again"),
+            Self::HeldOutput(true) => f.write_str("no host reads the output any more"),
+            Self::HeldOutput(false) => f.write_str("a host reads the output again"),
         }
     }
 }

@@ -30,7 +30,7 @@ const RULES: &[FieldRule] = &[
     ("Console", "line", Skip),
     // No action ends in the middle of a line, so the time since the last byte has no effect.
     ("Console", "silence_ms", Skip),
-    // A single line at another rate has enough wrong bytes to change the rate.
+    // A single line at another baud rate has enough wrong bytes to change the rate.
     ("RateFinder", "wrong_byte_count", Skip),
     (
         "Motion",
@@ -84,7 +84,7 @@ const LINE_ARRIVAL_FIELDS: &[FieldRule] = &[
     ("Safety", "boot_timer", Skip),
     // A command shows that the last reset came from a program that opened the port.
     ("Controller", "has_heard_command", Skip),
-    // After a command, the motion that `boot` began counts as ordered.
+    // After a command, the motion that `boot` started counts as commanded.
     ("Controller", "is_unattended", Skip),
 ];
 
@@ -102,7 +102,7 @@ fn pace_class(pace: u64) -> u64 {
     u64::from(pace > 0) + u64::from(pace >= 1024)
 }
 
-/// Returns the fingerprint of a value; fields are rounded or left out as `RULES` says.
+/// Returns the fingerprint of a value; `RULES` lists the fields that are rounded or left out.
 pub fn coarse_fingerprint(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, RULES)
 }

@@ -22,7 +22,7 @@ pub struct InitialState {
     pub world: World,
 }
 
-/// Names of EEPROM contents, each with the actions that make a standing robot write these contents.
+/// Names of EEPROM contents, each with the actions by which a standing robot writes these contents.
 const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
     ("a blank memory", &[]),
     (
@@ -36,7 +36,7 @@ const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
         ],
     ),
     (
-        "a saved rest",
+        "a saved rest pose",
         &[
             Line("pose 155 41.41 318.59 221.41"),
             Frames(160),
@@ -45,7 +45,7 @@ const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
         ],
     ),
     (
-        "saved settings and a saved rest",
+        "saved settings and a saved rest pose",
         &[
             Line("trim 1 8"),
             Frames(25),
@@ -57,7 +57,7 @@ const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
         ],
     ),
     (
-        "a save that was cut off",
+        "a save interrupted by a power loss",
         &[
             Line("trim 1 8"),
             Frames(25),
@@ -99,9 +99,9 @@ const ACTIVITIES: [&[Action]; 11] = [
 /// Returns an EEPROM with valid settings in which servo A3 has too little travel for the gaits.
 fn short_travel_memory(robot: &Robot) -> Eeprom {
     let mut settings = Settings::of(robot);
-    let mut servo_settings = settings.adjustment(Servo::ALL[2]);
-    servo_settings.travel_max = Sweep(robot.needed_travel(Servo::ALL[2]).max.0 / 2);
-    settings.set_adjustment(Servo::ALL[2], servo_settings);
+    let mut adjustment = settings.adjustment(Servo::ALL[2]);
+    adjustment.travel_max = Sweep(robot.needed_travel(Servo::ALL[2]).max.0 / 2);
+    settings.set_adjustment(Servo::ALL[2], adjustment);
     let mut memory = Eeprom::blank();
     let mut writing = COPY_ADDRESSES[0].start_write();
     while writing.advance(settings.bytes(), &mut memory) == Progress::InProgress {}
@@ -109,9 +109,6 @@ fn short_travel_memory(robot: &Robot) -> Eeprom {
 }
 
 /// Returns every initial state: each EEPROM with each activity. A combination that breaks a rule is left out.
-///
-/// # Panics
-/// If an EEPROM's contents cannot be prepared.
 pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = PREPARED_MEMORIES
         .iter()
@@ -136,7 +133,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
         ("foreign bytes in the memory", foreign_memory),
         ("a worn memory", worn_memory),
         (
-            "saved settings that cut the gaits off",
+            "saved settings with too little travel for the gaits",
             short_travel_memory(&robot),
         ),
     ]);

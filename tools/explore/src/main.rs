@@ -9,7 +9,7 @@ fn main() -> ExitCode {
         .nth(1)
         .map_or(Ok(10_000_000), |count| count.parse());
     let Ok(max_states) = max_states else {
-        eprintln!("explore [how many states]");
+        eprintln!("usage: explore [MAX_STATES]");
         return ExitCode::FAILURE;
     };
     let robot = small_robot();

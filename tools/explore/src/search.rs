@@ -79,7 +79,7 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
             let threads: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_thread)).collect();
             threads
                 .into_iter()
-                .map(|thread| thread.join().expect("a thread of the search"))
+                .map(|thread| thread.join().expect("no thread of the search panics"))
                 .collect()
         });
         let mut next_frontier = Vec::new();
@@ -113,7 +113,7 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
     result
 }
 
-/// The results of one thread.
+/// The results of one thread for one sequence length.
 #[derive(Default)]
 struct ThreadResult {
     tried_action_count: usize,
@@ -154,7 +154,7 @@ fn explore_queue(
 }
 
 impl ThreadResult {
-    /// Applies every possible action to the state `world`, which the step with this index has reached.
+    /// Applies every possible action to the state `world`, which the step with this index reached.
     fn expand(
         &mut self,
         world: &World,

@@ -28,7 +28,7 @@ pub const NOSE_PIN: u8 = 16;
 /// If robots/paper.toml is not valid.
 pub fn small_robot() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
-    let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is right");
+    let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is valid");
     let angle_rad = |sample: usize| sample as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
     let wave_of = |height_at: &dyn Fn(f64) -> f64| -> Wave {
         std::array::from_fn(|sample| (height_at(angle_rad(sample)) * 1820.0).round() as i16)
@@ -83,7 +83,7 @@ pub fn small_robot() -> Robot<'static> {
         (Step::CYCLES, trot, 1),
     ];
     add_routine(&mut content, "patrol", &patrol);
-    Robot::open(flash(&content.section_bytes())).expect("whole")
+    Robot::open(flash(&content.section_bytes())).expect("the section is valid")
 }
 
 /// Adds a gait whose four servos follow the same wave.

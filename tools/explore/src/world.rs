@@ -25,14 +25,14 @@ fn broken_rule(rule: Rule, observation: impl Into<String>) -> Verdict {
     Err(BrokenRule::new(rule, observation))
 }
 
-/// The bytes that a receiver reads if a line comes at another rate: enough wrong bytes to make the robot change its
-/// rate.
+/// The bytes that a receiver reads if a line is sent at another baud rate: enough wrong bytes to make the robot change
+/// its rate.
 const UNREADABLE: [u8; 40] = [GARBLED_BYTE; 40];
 
-/// Number of lines within which the robot must find the sender's rate.
+/// Number of lines within which the robot must find the sender's baud rate.
 const MAX_LINES_TO_FIND_RATE: usize = 12;
 
-/// The time of a frame, cycles.
+/// Duration of a frame, cycles.
 const FRAME: Time = 20 * MS;
 
 /// A state of the search.
@@ -49,7 +49,7 @@ pub struct World {
     was_main_late: bool,
     /// The last line that was sent; `None` once its answer has been judged.
     unanswered_line: Option<&'static str>,
-    /// The rate at which lines are sent.
+    /// The baud rate at which lines are sent.
     sender_rate: BaudRate,
     /// Number of answers that have been judged, but not printed yet.
     judged_answer_count: u8,
@@ -75,7 +75,7 @@ impl World {
         world
     }
 
-    /// Returns a number that is the same for equal states.
+    /// Returns the state's fingerprint, which is the same for equal states.
     pub fn fingerprint(&self) -> u64 {
         let board = &self.running_robot.board;
         let mut fingerprint =
@@ -257,7 +257,7 @@ impl World {
             return Ok(());
         }
         if self.observer.has_unanswered_lines() {
-            return broken_rule(Rule::AnswersAlways, "frames went by");
+            return broken_rule(Rule::AnswersAgain, "no answer within 100 frames");
         }
         let is_stop_unchanged = (self.fault_code(), self.observer.stopped_since()) == stop_before;
         if is_stop_unchanged && self.observer.time_since_start() > self.now - start {
@@ -347,7 +347,10 @@ impl World {
         if !log.is_empty() {
             log.clear();
             if !self.running_robot.board.converter.is_complete() {
-                return broken_rule(Rule::SafeWrites, "before the supply is measured");
+                return broken_rule(
+                    Rule::SafeWrites,
+                    "a byte is written before the supply is measured",
+                );
             }
             self.observe(Event::ByteWritten);
         }

@@ -17,13 +17,13 @@ pub struct Board {
     observer: Observer,
     now: Time,
     output: String,
-    /// The bytes of the line that has begun, collected independently of the core.
+    /// The bytes of the unfinished line, collected independently of the core.
     line: Vec<u8>,
-    /// True if the line that has begun is too long or contains a garbled byte.
+    /// True if the unfinished line is too long or contains a garbled byte.
     is_line_invalid: bool,
 }
 
-/// Returns the observer's limits for a robot that has a good supply and gets its lines between frames.
+/// Returns the observer's limits for a robot that has a good supply and receives its lines between frames.
 fn observer_limits(robot: &Robot) -> Limits {
     let cycles_of_us = |us: f64| (us * 16.0).round() as u32;
     let servos = robot.servos().each_ref();
@@ -179,20 +179,20 @@ impl Board {
         self.assert_rules_hold();
     }
 
-    /// Checks that the EEPROM holds complete settings or none, a complete rest pose or none, and nothing else.
+    /// Checks that the EEPROM holds valid settings or none, a valid rest pose or none, and nothing else.
     ///
     /// # Panics
-    /// If one of these is not true.
+    /// If the EEPROM holds anything else.
     pub fn assert_memory_is_valid(&self) {
-        let rule = Rule::MemoryWhole.sentence();
+        let rule = Rule::MemoryValid.sentence();
         let robot = self.robot.firmware();
         let mut settings = Settings::of(robot);
         let outcome = copies::load(robot, self.memory(), &mut settings);
-        let are_settings_whole = matches!(outcome, SavedState::Latest | SavedState::Blank);
-        assert!(are_settings_whole, "{rule}: {outcome:?}");
+        let are_settings_valid = matches!(outcome, SavedState::Latest | SavedState::Blank);
+        assert!(are_settings_valid, "{rule}: {outcome:?}");
         let is_rest_pose_blank = self.memory().read(REST_POSE_ADDRESS.0) == 0xff;
         let has_rest_pose = copies::last_rest_pose(robot, self.memory()).is_some();
-        assert!(is_rest_pose_blank || has_rest_pose, "{rule}: a pose");
+        assert!(is_rest_pose_blank || has_rest_pose, "{rule}: the rest pose");
         // No record reaches these addresses.
         assert!(
             (192..1024).all(|address| self.memory().read(address) == 0xff),

@@ -71,7 +71,7 @@ pub fn check_memory(data: &[u8]) {
     }
     let memory_before = memory.clone();
     let mut board = Board::new(robot, memory);
-    // After three and a half seconds, the `boot` action has begun, too.
+    // After 3.5 s, the `boot` action has started, too.
     for _ in 0..175 {
         board.run_frame();
     }
@@ -80,7 +80,7 @@ pub fn check_memory(data: &[u8]) {
     assert_eq!(
         bytes_after[settings_range.clone()],
         memory_before.bytes()[settings_range],
-        "no command saved settings"
+        "the settings change although no command saved them"
     );
     for byte in b"status\nstand\n" {
         board.send_byte(*byte);

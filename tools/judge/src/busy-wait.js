@@ -1,5 +1,5 @@
 // A boot loader waits for bytes and flags in loops that read one flag and jump back. Between two clock events nothing
-// can change that flag. So all rounds that end before the next event are skipped in one step, to the same cycle.
+// can change that flag. So all iterations that end before the next event are skipped in one step, to the same cycle.
 import { avrInstruction } from 'avr8js';
 
 /** Data addresses of registers whose flags change only by a clock event or by the program. */
@@ -11,14 +11,14 @@ const SREG = 0x5f;
 const SREG_I = 0x80;
 const IO_START = 0x20;
 
-/** Opcode of an RJMP that jumps back by a number of words; its own word counts. */
+/** Opcode of an RJMP that jumps back by a number of words, including its own. */
 const rjmpBack = (words) => 0xd000 - words;
 /** True for SBRS and SBRC. */
 const isSkip = (opcode) => (opcode & 0xfc08) === 0xfc00;
 
 /**
  * Returns the loop that ends with the jump at `pc`: the address of its flag register, the flag's bit, the flag's value
- * while the loop continues, and the cycles of a round. Returns null for any other loop.
+ * while the loop continues, and the cycles of an iteration. Returns null for any other loop.
  */
 function flagLoopAt(progMem, pc) {
   const [first, second, third] = [progMem[pc - 3], progMem[pc - 2], progMem[pc - 1]];
@@ -26,13 +26,13 @@ function flagLoopAt(progMem, pc) {
   switch (progMem[pc]) {
     case rjmpBack(2): // sbis or sbic
       if ((third & 0xfd00) !== 0x9900) return null;
-      return { ...flag, address: IO_START + ((third >> 3) & 0x1f), roundCycles: 3 };
+      return { ...flag, address: IO_START + ((third >> 3) & 0x1f), iterationCycles: 3 };
     case rjmpBack(3): // in, then sbrs or sbrc
       if ((second & 0xf800) !== 0xb000 || !isSkip(third)) return null;
-      return { ...flag, address: IO_START + ((second & 0x600) >> 5) + (second & 0xf), roundCycles: 4 };
+      return { ...flag, address: IO_START + ((second & 0x600) >> 5) + (second & 0xf), iterationCycles: 4 };
     case rjmpBack(4): // lds, then sbrs or sbrc
       if ((first & 0xfe0f) !== 0x9000 || !isSkip(third)) return null;
-      return { ...flag, address: second, roundCycles: 5 };
+      return { ...flag, address: second, iterationCycles: 5 };
     default:
       return null;
   }
@@ -46,11 +46,11 @@ export function skipBusyWaits(uno) {
     avrInstruction(cpu);
     if (loop === null || !FLAG_REGISTERS.has(loop.address)) return;
     if (((data[loop.address] >> loop.bit) & 1) !== loop.waitingValue) return;
-    // An interrupt that is due comes before the next round.
+    // An interrupt that is due comes before the next iteration.
     if (cpu.nextInterrupt >= 0 && data[SREG] & SREG_I) return;
     const nextCycle = Math.min(cpu.nextClockEvent?.cycles ?? Infinity, uno.endCycle);
-    const rounds = Math.floor((nextCycle - 1 - cpu.cycles) / loop.roundCycles);
-    if (rounds > 0) cpu.cycles += rounds * loop.roundCycles;
+    const iterations = Math.floor((nextCycle - 1 - cpu.cycles) / loop.iterationCycles);
+    if (iterations > 0) cpu.cycles += iterations * loop.iterationCycles;
   };
   const jumpOpcodes = new Set([2, 3, 4].map(rjmpBack));
   uno.overrideInstructions(execute, (opcode) => jumpOpcodes.has(opcode));

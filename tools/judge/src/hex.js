@@ -5,7 +5,7 @@ export function loadHex(text, flash) {
   text.split(/\r?\n/).forEach((line, index) => {
     if (line === '' || hasEnded) return;
     const errorOf = (problem) => new Error(`line ${index + 1} of the HEX file ${problem}`);
-    if (!/^:([0-9a-f]{2}){5,}$/i.test(line)) throw errorOf('is no record');
+    if (!/^:([0-9a-f]{2}){5,}$/i.test(line)) throw errorOf('is not a record');
     const bytes = Uint8Array.from(line.slice(1).match(/../g), (pair) => parseInt(pair, 16));
     if (bytes.reduce((sum, byte) => (sum + byte) & 0xff, 0) !== 0) throw errorOf('has a wrong checksum');
     if (bytes.length !== bytes[0] + 5) throw errorOf('has a wrong length');
@@ -29,8 +29,8 @@ export function loadHex(text, flash) {
       case 5:
         break;
       default:
-        throw errorOf('is of an unknown kind');
+        throw errorOf('has an unknown type');
     }
   });
-  if (!hasEnded) throw new Error('the HEX file has no end');
+  if (!hasEnded) throw new Error('the HEX file has no end record');
 }

@@ -1,5 +1,5 @@
 // The receiver holds two bytes, and a third waits in its shift register (data sheet, 19.7.1); further bytes
-// are lost. avr8js holds one. A boot loader that blinks its LED before it reads needs all three.
+// are lost. avr8js holds one. A boot loader that blinks its LED before it reads relies on all three.
 const RXEN = 0x10;
 const RXC = 0x80;
 const FE = 0x10;

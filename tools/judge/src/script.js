@@ -2,7 +2,7 @@
 
 /**
  * Reads a script: lines `analogue <pin, 14 to 19> <mV>`, the voltages at A0 to A5; lines
- * `<cycle> <two hex digits>` in the order of time, bytes that the UNO has received completely at that cycle;
+ * `<cycle> <two hex digits>` in chronological order, bytes whose reception ends at that cycle;
  * and last `end <cycle>`. Throws an error that names the line.
  */
 export function readScript(text) {
@@ -25,7 +25,7 @@ export function readScript(text) {
       return;
     }
     const cycle = Number(match[1]);
-    if (cycle < (bytes.at(-1)?.cycle ?? 0)) throw errorOf('is earlier than the one before');
+    if (cycle < (bytes.at(-1)?.cycle ?? 0)) throw errorOf('is earlier than the previous byte');
     bytes.push({ cycle, byte: parseInt(match[2], 16) });
   });
   if (endCycle === undefined) throw new Error('the script has no `end <cycle>`');

@@ -1,4 +1,4 @@
-// avr8js updates a timer at each of its counts, which is nearly all of the simulator's work. Here a timer is updated
+// avr8js updates a timer at each of its counts, which takes nearly all of the simulation's time. Here a timer is updated
 // only when its next flag is due, and before the program reads or changes it. Only the speed differs; a test compares
 // both ways.
 

@@ -37,7 +37,7 @@ const PORF = 0x01;
 const RXC = 0x80;
 
 export class Uno {
-  /** Makes a board at power-on with an empty flash. Each of `corrections` is a function that corrects avr8js in it. */
+  /** Makes a board at power-on with an empty flash. Each of `corrections` is a function that corrects its avr8js. */
   constructor(corrections) {
     const flashWords = new Uint16Array(FLASH_WORDS).fill(0xffff);
     this.flash = new Uint8Array(flashWords.buffer);
@@ -80,7 +80,7 @@ export class Uno {
     for (const correct of corrections) correct(this);
   }
 
-  /** Makes `execute(cpu)` execute all instructions whose opcode `matches`. Other instructions run as fast as before. */
+  /** Makes `execute(cpu)` execute all instructions whose opcode `matches`. The speed of other instructions does not change. */
   overrideInstructions(execute, matches) {
     const index = this.executors.push(execute) - 1;
     for (let opcode = 0; opcode <= 0xffff; opcode++) if (matches(opcode)) this.executorIndexes[opcode] = index;
@@ -119,7 +119,7 @@ export class Uno {
       const arrive = () => {
         // An ATmega's receiver holds three bytes; that of avr8js holds one.
         if (cpu.data[usart.config.UCSRA] & RXC) {
-          throw new Error(`at cycle ${cpu.cycles} a byte comes before the last was read, which avr8js does not simulate`);
+          throw new Error(`at cycle ${cpu.cycles} a byte arrives before the last was read, which avr8js does not simulate`);
         }
         usart.writeByte(value.byte, true);
         deliverNext();

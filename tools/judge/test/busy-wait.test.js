@@ -7,7 +7,7 @@ import { addReceiveBuffer } from '../src/receive-buffer.js';
 import { makeUno } from './program.js';
 
 // The program waits for a byte, then twice for timer 1, each time by other instructions. It stores the byte and the
-// timer's counts in SRAM from X on. Meanwhile an interrupt comes at changing intervals.
+// timer's counts in SRAM from X on. Meanwhile interrupts occur at changing intervals.
 const PROGRAM = `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA
@@ -62,7 +62,7 @@ const PROGRAM = `
     st X+, r24
     rjmp byte`;
 
-/** Runs the program while 40 bytes come; returns the board's state and the number of executed jumps back. */
+/** Runs the program while 40 bytes arrive; returns the board's state and the number of executed jumps back. */
 function stateAfter(extraCorrections) {
   let jumps = 0;
   const countJumps = (board) => {
@@ -79,7 +79,7 @@ function stateAfter(extraCorrections) {
   return { cycles: board.cpu.cycles, pc: board.cpu.pc, data: [...board.cpu.data], jumps };
 }
 
-test('a program that waits for flags has the same state at the same cycle, and its rounds are skipped', () => {
+test('a program that waits for flags has the same state at the same cycle, and its iterations are skipped', () => {
   const [slow, { jumps, ...fast }] = [stateAfter([]), stateAfter([skipBusyWaits])];
   delete slow.jumps;
   for (let byte = 1; byte <= 40; byte++) assert.ok(slow.data.slice(0x100).includes(byte), `byte ${byte} was read`);
@@ -87,7 +87,7 @@ test('a program that waits for flags has the same state at the same cycle, and i
   assert.ok(jumps > 100 && jumps < 3000, `${jumps} jumps instead of tens of thousands`);
 });
 
-test('no round is skipped of a loop that waits for a count', () => {
+test('no iteration of a loop that waits for a count is skipped', () => {
   const source = PROGRAM.replace('lds r24, 0xc0 ', 'lds r24, 0x84 ');
   assert.notEqual(source, PROGRAM);
   const [slow, fast] = [[], [skipBusyWaits]].map((extraCorrections) => {

@@ -4,7 +4,7 @@ import test from 'node:test';
 import { ignoreCompareBeyondTop } from '../src/corrections/compare-beyond-top.js';
 import { fixedMessage, runProgram } from './program.js';
 
-// Timer 1 counts up to 99 and begins again; OCR1B is `compare`. The program copies the flags to r20.
+// Timer 1 counts up to 99 and restarts; OCR1B is `compare`. The program copies the flags to r20.
 const program = (compare) => `
     ldi r18, 99
     sts 0x88, r18     ; OCR1AL

@@ -16,7 +16,7 @@ test('two events that are due at the same cycle are handled at the same cycle', 
   assert.deepEqual(eventCycles([handleAllDueEvents]), [6, 6]);
 });
 
-test('the interrupt with the lowest address is chosen after all due events', () => {
+test('the interrupt with the lowest address is served first after all due events', () => {
   // Both interrupt flags are set at the same cycle.
   const board = makeUno([handleAllDueEvents], 'sei\nagain: rjmp again');
   const interruptAt = (address) => ({ address, flagRegister: 0x36, flagMask: 0, enableRegister: 0x20, enableMask: 1 });

@@ -4,7 +4,7 @@ import test from 'node:test';
 import { delayInterruptAfterEnable } from '../src/corrections/interrupt-waits.js';
 import { fixedMessage, runProgram } from './program.js';
 
-// Both compare interrupts of timer 0 are due when interrupts are switched on. Then main counts in r16, and the handlers
+// Both compare interrupts of timer 0 are pending when interrupts are switched on. Then main counts in r16, and the handlers
 // copy that count to r20 and r21.
 const program = (switchOn) => `
     jmp main

@@ -1,4 +1,4 @@
-// Peripherals besides timers and serial line: behaviour that firmware may rely on in this simulation, and cases that
+// Peripherals other than the timers and the serial line: behaviour that firmware may rely on in this simulation, and cases that
 // are not simulated.
 import assert from 'node:assert/strict';
 import test from 'node:test';
@@ -28,7 +28,7 @@ const WRITE_PROGRAM = `
 test('a byte of EEPROM takes 3.4 ms to write, and can be read back', () => {
   const board = runProgram(corrections, WRITE_PROGRAM, 5 * CYCLES_PER_MS);
   const { data } = board.cpu;
-  // A round of the loop takes five cycles.
+  // An iteration of the loop takes five cycles.
   const busyCycles = (data[24] + 256 * data[25]) * 5;
   assert.ok(Math.abs(busyCycles - 3.4 * CYCLES_PER_MS) < 20, `${busyCycles} cycles`);
   assert.equal(data[17], 0x5a);
@@ -56,7 +56,7 @@ test('the bandgap against 5 V reads 225', () => {
     stop:
       rjmp stop`, CYCLES_PER_MS).cpu;
   assert.equal(data[18] + 256 * data[19], 225);
-  // The first conversion takes 25 cycles of its clock; a round of the loop takes seven.
+  // The first conversion takes 25 cycles of its clock; an iteration of the loop takes seven.
   assert.ok(Math.abs((data[24] + 256 * data[25]) * 7 - 25 * 128) < 20);
 });
 
@@ -94,5 +94,5 @@ test('a watchdog reset ends the run, because avr8js resets the processor alone',
 test('a byte that would overrun the last one ends the run', () => {
   const board = makeUno(corrections, 'ldi r16, 0x10\n sts 0xc1, r16\n again: rjmp again');
   board.deliver([{ cycle: 100, byte: 1 }, { cycle: 1500, byte: 2 }]);
-  assert.throws(() => board.run(2000), /^Error: at cycle 150\d a byte comes before the last was read/);
+  assert.throws(() => board.run(2000), /^Error: at cycle 150\d a byte arrives before the last was read/);
 });

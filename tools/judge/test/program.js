@@ -1,4 +1,4 @@
-// Helpers of the tests: they run small AVR programs on avr8js with chosen corrections.
+// Test helpers that run small AVR programs on avr8js with chosen corrections.
 import assembler from 'avr8js/dist/cjs/utils/assembler.js';
 
 import { Uno } from '../src/uno.js';
@@ -6,7 +6,7 @@ import { Uno } from '../src/uno.js';
 /** Makes an Uno with an assembled program in flash. In the source, `_LOC n` continues at byte address n. */
 export function makeUno(corrections, source) {
   const { bytes, errors } = assembler.assemble(source);
-  if (errors.length > 0) throw new Error(`the program is wrong: ${JSON.stringify(errors)}`);
+  if (errors.length > 0) throw new Error(`the program cannot be assembled: ${JSON.stringify(errors)}`);
   const board = new Uno(corrections);
   board.flash.set(bytes);
   return board;

@@ -7,7 +7,7 @@ import { simulateSleep } from '../src/corrections/sleep.js';
 import { fixedMessage, makeUno, runProgram } from './program.js';
 
 // Timer 1 matches at 200; until then main repeats a loop that begins with SLEEP. The handler stores the timer's count
-// in r20 and the number of completed rounds of the loop in r21.
+// in r20 and the number of completed iterations of the loop in r21.
 const program = (sleepMode) => `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA
@@ -36,9 +36,9 @@ const program = (sleepMode) => `
 const SLEEP_AND_INTERRUPTS = [extendInterruptEntry, delayInterruptAfterEnable, simulateSleep];
 
 test('SLEEP lasts until an interrupt', () => {
-  const roundCount = (corrections) => runProgram(corrections, program(1), 400).cpu.data[21];
-  assert.notEqual(roundCount([]), 0, fixedMessage('sleep.js'));
-  assert.equal(roundCount([simulateSleep]), 0);
+  const iterationCount = (corrections) => runProgram(corrections, program(1), 400).cpu.data[21];
+  assert.notEqual(iterationCount([]), 0, fixedMessage('sleep.js'));
+  assert.equal(iterationCount([simulateSleep]), 0);
 });
 
 test('SLEEP does nothing unless SE is set', () => {

@@ -4,7 +4,7 @@ import test from 'node:test';
 import { keepWaitingByte } from '../src/corrections/waiting-byte.js';
 import { fixedMessage, makeUno } from './program.js';
 
-// A byte comes while the receiver is on; then the program writes UCSR0B. It copies the status before that to r16 and
+// A byte arrives while the receiver is on; then the program writes UCSR0B. It copies the status before that to r16 and
 // the status after that to r17.
 const program = (control) => `
     ldi r18, 0x10
@@ -26,7 +26,7 @@ function receiveFlagAfter(corrections, control) {
   board.deliver([{ cycle: 50, byte: 0x41 }]);
   board.run(200);
   const { data } = board.cpu;
-  assert.equal(data[16] >> 7, 1, 'the byte has come');
+  assert.equal(data[16] >> 7, 1, 'the byte has arrived');
   return data[17] >> 7;
 }
 

@@ -1,4 +1,4 @@
-//! Code of one function: its instructions and their references.
+//! The code of one function: its instructions and their references.
 
 use crate::edit::Reference;
 use crate::instruction::{is_relative, is_two_words};
@@ -6,7 +6,7 @@ use crate::instruction::{is_relative, is_two_words};
 /// An instruction with its offset in the code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PlacedInstruction {
-    /// Bytes from the beginning of the code.
+    /// Offset from the start of the code, bytes.
     pub offset: u64,
     /// The first word of the instruction.
     pub first_word: u16,

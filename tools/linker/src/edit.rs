@@ -6,26 +6,26 @@ use object::elf::RelocationType;
 /// The content of a relocation: the linker writes the address `symbol + addend` at an offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reference {
-    /// Bytes from the beginning of the code.
+    /// Offset from the start of the code, bytes.
     pub offset: u64,
     /// The form in which the linker writes the address.
     pub kind: RelocationType,
     /// The symbol from which the address is counted.
     pub symbol: SymbolId,
-    /// Bytes after the symbol.
+    /// Offset from the symbol, bytes.
     pub addend: i64,
 }
 
 /// A replacement of the bytes from `offset` on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
-    /// Bytes from the beginning of the code.
+    /// Offset from the start of the code, bytes.
     pub offset: u64,
     /// The number of bytes that are replaced; their references are replaced, too.
     pub removed_bytes: u64,
     /// The new code, in words.
     pub new_words: Vec<u16>,
-    /// The references of the new code; their offsets count from the beginning of the new code.
+    /// The references of the new code; their offsets count from the start of the new code.
     pub references: Vec<Reference>,
 }
 

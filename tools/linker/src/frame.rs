@@ -67,7 +67,7 @@ pub struct Routines {
 pub struct Frame {
     /// The index in [`FIRST_REGISTERS`] of the routines that save all registers of the function.
     pub routine_index: usize,
-    /// The size of the room for variables, bytes.
+    /// Size of the room for variables on the stack, bytes.
     pub room_bytes: u8,
     /// The size of the prologue, bytes.
     pub prologue_size: u64,

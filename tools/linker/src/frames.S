@@ -1,14 +1,14 @@
-; The beginning and the end of a function, written once for all of them.
+; The prologues and epilogues that all functions share.
 ;
 ; __frame_save_K is called with a number of bytes in r26. It saves the registers from rK to
-; r17 and r28, r29, makes room for so many bytes, and points r29:r28 to them.
-; __frame_restore_K is jumped to with the same number in r26. It undoes all that and returns
+; r17 and r28, r29, makes room for that many bytes, and points r29:r28 to them.
+; __frame_restore_K is jumped to with the same number in r26. It undoes this and returns
 ; to the function's caller.
 ;
-; Besides r26, r0 and the flags change. r1 is 0 before and after, as everywhere; an
-; interrupt in between makes it 0 for itself. The halves of the stack pointer are set with
-; interrupts off; one that waits is not served before the instruction behind
-; "out SREG" is done, too.
+; Besides r26, r0 and the flags change. r1 is 0 before and after, as the calling convention
+; requires; an interrupt handler clears r1 itself. The halves of the stack pointer are set with
+; interrupts off; a pending interrupt is served only after the instruction that follows
+; "out SREG".
 
 #define SPL 0x3d
 #define SPH 0x3e
@@ -19,7 +19,7 @@
     .global __frame_save_\first
     .type __frame_save_\first, @function
 __frame_save_\first:
-    ; Where to go back to lies on the stack's top.
+    ; The return address is on top of the stack.
     pop r1
     pop r0
     jmp __frame_push_\first
@@ -33,7 +33,7 @@ __frame_restore_\first:
     in r29, SPH
     add r28, r26
     adc r29, r1
-    ; How many bytes were saved.
+    ; The number of saved bytes.
     ldi r26, 20 - \first
     jmp __frame_load_\first
     .size __frame_restore_\first, . - __frame_restore_\first

@@ -2,7 +2,7 @@
 //! avr-gcc has and LLVM does not have.
 //!
 //! Flash is the scarcest resource of this firmware. A sixth of the program was copies of the same few
-//! instructions: registers pushed at the beginning of a function and popped at its end, and the eight
+//! instructions: registers pushed at the start of a function and popped at its end, and the eight
 //! instructions that move the stack pointer. With `-mcall-prologues`, avr-gcc calls shared routines
 //! instead, so the program has these instructions once. LLVM has no such option. But its object files
 //! can be edited safely: every function has its own section. Each jump and each address is a

@@ -35,7 +35,8 @@ fn run() -> Result<ExitCode, String> {
         // A temporary file that cannot be removed does no harm.
         let _ = fs::remove_file(path);
     }
-    let status = status.map_err(|error| format!("avr-gcc, which links the firmware: {error}"))?;
+    let status = status
+        .map_err(|error| format!("avr-gcc, which links the firmware, does not start: {error}"))?;
     Ok(if status.success() {
         ExitCode::SUCCESS
     } else {

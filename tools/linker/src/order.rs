@@ -21,7 +21,7 @@ const TRY_COUNT: u32 = 600_000;
 /// The rise of the cost that is accepted at first; the accepted rise falls to 0 during the search.
 const INITIAL_RISE: u32 = 4 * OUT_OF_REACH_COST;
 
-/// The seed of the search; any other number would serve as well.
+/// The seed of the search; any other number would do as well.
 const SEED: u64 = 1;
 
 /// A call or a jump from one piece of code to another.
@@ -119,8 +119,8 @@ fn move_piece(order: &mut [usize], from: usize, to: usize) {
 mod tests {
     use super::*;
 
-    /// Returns ten pairs of pieces, in each of which the first piece calls the second, ten pieces further on, and
-    /// one piece at the end that the first piece calls.
+    /// Returns 21 pieces: each of the first ten calls the piece ten places further on, and the first piece also calls
+    /// the last one.
     fn pieces_in_pairs() -> Pieces {
         let mut pieces = Pieces {
             sizes: vec![700; 20],
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn no_piece_and_one_piece_have_an_order() {
+    fn an_empty_list_and_a_single_movable_piece_have_an_order() {
         assert!(Pieces::default().find_order().is_empty());
         let pieces = Pieces {
             sizes: vec![9000, 0],

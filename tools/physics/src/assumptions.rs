@@ -14,7 +14,7 @@ use crate::mujoco::scene_of;
 use crate::surface::{self, Surface, SurfaceDisplacements};
 use crate::table::Component;
 
-/// The gaits that are walked, the same as in `lizard gaits --assumptions`.
+/// The simulated gaits, the same as in `lizard gaits --assumptions`.
 pub const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 /// The smallest change that the table shows as a number, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
@@ -22,7 +22,7 @@ const MIN_CHANGE_PERCENT: f64 = 10.0;
 /// A changed assumption about the paper's robot or its floor.
 #[derive(Clone, Copy)]
 pub struct Assumption {
-    /// The description of the changed assumption, its name in the table.
+    /// The assumption's name in the table.
     pub description: &'static str,
     /// A line of robot.toml, and the lines that replace it.
     line_replacement: Option<(&'static str, &'static str)>,
@@ -83,7 +83,7 @@ impl Assumption {
     pub fn robot(&self) -> Robot {
         match self.line_replacement {
             Some((old_line, new_lines)) => parse_paper_with(old_line, new_lines),
-            None => crate::robot("paper"),
+            None => crate::load_robot("paper"),
         }
     }
 
@@ -111,7 +111,7 @@ impl Assumption {
 /// Returns the paper's robot with a line of its file replaced by other lines.
 fn parse_paper_with(old_line: &str, new_lines: &str) -> Robot {
     let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
-    let text = text.expect("robots/paper.toml");
+    let text = text.expect("robots/paper.toml is readable");
     let old_text = format!("\n{old_line}");
     assert!(text.contains(&old_text), "{old_line}");
     Robot::parse(&text.replacen(&old_text, &format!("\n{new_lines}"), 1)).expect(new_lines)
@@ -125,7 +125,8 @@ pub type AssumptionDisplacements = BTreeMap<String, BTreeMap<String, Displacemen
 /// # Panics
 /// If `assumptions.json` is not a table of displacements.
 pub fn stored() -> AssumptionDisplacements {
-    serde_json::from_str(include_str!("../assumptions.json")).expect("assumptions.json")
+    serde_json::from_str(include_str!("../assumptions.json"))
+        .expect("assumptions.json has the expected format")
 }
 
 /// Returns a table of the changes of each gait by the assumptions and the surfaces, in percent of MuJoCo's displacement
@@ -159,7 +160,7 @@ pub fn table(
                 };
                 100.0 * (component.value(displacement) / component.value(level) - 1.0)
             });
-        std::array::from_fn(|_| changes.next().expect("one of each gait"))
+        std::array::from_fn(|_| changes.next().expect("every gait has a change"))
     };
     let largest_change = |changes: &[f64; GAITS.len()]| {
         changes

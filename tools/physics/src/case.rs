@@ -1,4 +1,4 @@
-//! Cases in which each gait is walked: the drive of the legs, and the length of the feet.
+//! Cases in which each gait is simulated: the drive of the legs, and the length of the feet.
 
 use std::fmt;
 

@@ -29,7 +29,7 @@ pub struct Crossing {
 }
 
 impl Crossing {
-    /// Finds the crossing of a gait by its displacement in one cycle. The measurement begins after `unmeasured_cycles`.
+    /// Finds the crossing of a gait from its displacement in one cycle. The measurement begins after `unmeasured_cycles`.
     pub fn of(robot: &Robot, cycle_displacement: Displacement, unmeasured_cycles: u32) -> Self {
         let feet = robot.ground().feet.positions([0.0; 4]);
         let foot_distances_along = |place: Place, heading_deg: f64| {
@@ -56,7 +56,7 @@ impl Crossing {
             } else {
                 direction_from(end, start)
             };
-            // All feet are compared, since after an arc the order of the feet along the heading may be another.
+            // All feet are compared, since after an arc the order of the feet along the heading may differ.
             let distance_mm = foot_distances_along(start, heading_deg)
                 .into_iter()
                 .fold(f64::MIN, f64::max)

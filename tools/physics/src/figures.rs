@@ -45,9 +45,9 @@ pub struct Answers {
 
 /// Allowed difference between MuJoCo and the model with level feet: mm or, if larger, a share of the distance; and deg.
 const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
-/// The same with one foot too long on soft leaves.
+/// The allowed difference with one foot too long on soft leaves.
 const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
-/// The same with one foot too long on stiff leaves, where a few hundredths of a mm decide which feet stick.
+/// The allowed difference with one foot too long on stiff leaves, where a few hundredths of a mm decide which feet stick.
 const STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
 /// The displacement in the model, mm and deg, below which MuJoCo may differ by [`STANDSTILL_TOLERANCE_MM`]. The robot
 /// then moves nearly equally fast in both directions, so the result depends on inertia.
@@ -94,7 +94,8 @@ impl Figures {
     /// # Panics
     /// If `figures.json` does not have the format of [`Figures::to_json`].
     pub fn stored() -> Self {
-        serde_json::from_str(include_str!("../figures.json")).expect("figures.json")
+        serde_json::from_str(include_str!("../figures.json"))
+            .expect("figures.json has the expected format")
     }
 
     /// Returns the text of `figures.json`, with a line for each walk.

@@ -24,7 +24,7 @@ pub const GAITS: [(&str, bool); 5] = [
     ("left", true),
     ("arc-left", false),
 ];
-/// The largest ratio at which the model and MuJoCo must agree on a gait against the grain. Above this ratio, the pads
+/// The largest friction ratio at which the model and MuJoCo must agree on a gait against the grain. Above this ratio, the pads
 /// that push have hardly more friction than the pad that returns, so the result depends on inertia, which the model
 /// ignores.
 const MAX_RATIO_AGAINST: f64 = 1.5;
@@ -42,7 +42,7 @@ const BOUND: Bound = Bound {
     share: 0.2,
     deg: 2.0,
 };
-/// The time that a gait needs to accelerate the body from rest, s. After it the motion repeats from cycle to cycle.
+/// The time that a gait needs to accelerate the body from rest, s. Then the motion repeats from cycle to cycle.
 const SETTLING_S: f64 = 1.5;
 
 /// The answers by gait, in the order of [`RATIOS`].
@@ -53,7 +53,8 @@ pub type GrainAnswers = BTreeMap<String, Vec<Answers>>;
 /// # Panics
 /// If `grains.json` does not have the format of [`to_json`].
 pub fn stored() -> GrainAnswers {
-    serde_json::from_str(include_str!("../grains.json")).expect("grains.json")
+    serde_json::from_str(include_str!("../grains.json"))
+        .expect("grains.json has the expected format")
 }
 
 /// Returns the text of `grains.json`, with a line for each walk.
@@ -64,7 +65,7 @@ pub fn to_json(grains: &GrainAnswers) -> String {
     let gaits = grains.iter().map(|(gait, answers)| {
         let lines = answers
             .iter()
-            .map(|answers| serde_json::to_string(answers).expect("numbers"));
+            .map(|answers| serde_json::to_string(answers).expect("numbers can be written as JSON"));
         format!("{gait:?}: [\n{}\n]", lines.collect::<Vec<_>>().join(",\n"))
     });
     format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
@@ -95,7 +96,7 @@ pub fn model_displacement(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Opti
 pub fn measure(robot: &Robot) -> Result<GrainAnswers, MujocoError> {
     let assembly = Assembly::new(robot);
     let walk_name = |gait: &str, index: usize| format!("{gait}-{index}");
-    let gaits = GAITS.map(|(name, _)| robot.gait(name).expect(name));
+    let gaits = GAITS.map(|(name, _)| robot.gait(name).expect("the robot has this gait"));
     let mut jobs = Jobs::new()?;
     let scenes = gaits.iter().flat_map(|gait| {
         let ratios = RATIOS.into_iter().enumerate();
@@ -123,7 +124,7 @@ pub(crate) fn settling_cycle_count(gait: &CheckedGait) -> u32 {
 
 /// Returns the answers of a gait at the ratio in the robot's file.
 pub(crate) fn answers_at_own_ratio(answers: &[Answers]) -> Answers {
-    let own_ratio = crate::robot(ROBOT).ground().friction_ratio;
+    let own_ratio = crate::load_robot(ROBOT).ground().friction_ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own_ratio);
     answers[index.expect("the file's ratio is one of the table's")]
 }
@@ -178,7 +179,7 @@ pub fn table(robot: &Robot, grains: &GrainAnswers) -> String {
         _ => vec![(gait, 0)],
     });
     for (gait, component) in rows {
-        let period = robot.gait(gait).expect(gait).period();
+        let period = robot.gait(gait).expect("the robot has this gait").period();
         let unit = if component == 0 { "mm/s" } else { "deg/s" };
         _ = write!(text, "{gait:10}{unit:>6}");
         for answers in &grains[gait] {

@@ -1,8 +1,8 @@
-//! Comparison of the contact model with MuJoCo, a physics engine of other authors.
+//! Comparison of the contact model with MuJoCo, an independent physics engine.
 //!
 //! Every prediction of a path over the floor comes from this project's own contact model. A fault of that model would
-//! affect every table, the page and the choice of gaits. So MuJoCo, which does not use the model, walks the same gaits
-//! with the robot that `lizard model` writes.
+//! affect every table, the page and the choice of gaits. So MuJoCo, which does not use the model, simulates the same
+//! gaits of the robot that `lizard model` writes.
 //!
 //! `make physics` runs MuJoCo ([`mujoco`]), compares its displacements with the model's and with the stored ones in
 //! `figures.json`, and prints all of them. The tables of the documentation are made from the stored figures
@@ -35,13 +35,13 @@ use lizard_robot::Robot;
 
 /// The names of the files of robots/ that are compared, without their extension. `grain` has a table of its own
 /// ([`grains`]).
-pub const ROBOTS: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
+pub const ROBOT_NAMES: [&str; 4] = ["paper", "own-gaits", "large", "unequal"];
 
-/// Loads a file of robots/ by its name without the extension.
+/// Loads the robot of a file in robots/ by the file's name without the extension.
 ///
 /// # Panics
 /// If the file is missing or refused; tests of the robot crate show that every file is valid.
-pub fn robot(name: &str) -> Robot {
+pub fn load_robot(name: &str) -> Robot {
     let file = crate_folder().join(format!("../../robots/{name}.toml"));
     Robot::load(file).expect(name)
 }

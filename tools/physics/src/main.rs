@@ -1,5 +1,5 @@
 //! `make physics`: compares the displacement of every gait of the robots of robots/ in the contact model and in
-//! MuJoCo. Only MuJoCo walks the robots over edges and blocks, and the paper's robot on slopes and other floors.
+//! MuJoCo. Only MuJoCo simulates walks over edges and blocks, and walks of the paper's robot on other floors.
 //! With `--write` the new results replace the stored ones; with `--one-in N` only every N-th walk is simulated.
 
 use std::collections::BTreeMap;
@@ -14,14 +14,15 @@ use lizard_physics::servos::{self, ServoAnswers, Variant, servos_table};
 use lizard_physics::surface::{self, Surface, SurfaceDisplacements, surfaces_table};
 use lizard_physics::text::{format_blocks, format_lines};
 use lizard_physics::{
-    Answers, Displacement, Figures, Legs, ROBOTS, Walk, crate_folder, robot, table, walks_of,
+    Answers, Displacement, Figures, Legs, ROBOT_NAMES, Walk, crate_folder, load_robot, table,
+    walks_of,
 };
 use lizard_robot::Robot;
 
 /// The largest difference from a stored displacement, mm and deg, that is not reported as a change.
 const TOLERANCES: (f64, f64) = (0.6, 0.4);
 /// The message for a walk without a stored answer.
-const NOT_STORED: &str = "no figures are kept; `make physics WRITE=1` keeps these";
+const NOT_STORED: &str = "no figures are stored; `make physics WRITE=1` stores these";
 /// Prefixes of the names of walks: on other floors, with other servos, with other assumptions, with other pads.
 const SURFACE_PREFIX: &str = "surface";
 const SERVOS_PREFIX: &str = "servos";
@@ -39,7 +40,9 @@ fn main() -> ExitCode {
             number.parse().ok()
         }
         _ => {
-            eprintln!("physics: --write, or --one-in and a number from 1 on, not {arguments:?}");
+            eprintln!(
+                "usage: physics [--write | --one-in N], with N of at least 1; not {arguments:?}"
+            );
             return ExitCode::from(2);
         }
     };
@@ -71,7 +74,7 @@ fn walk_name(prefix: &str, index: usize) -> String {
 /// stores their answers. Returns a message for each fault.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (is_writing, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
-    let robots: Vec<(&str, Robot)> = ROBOTS.map(|name| (name, robot(name))).into();
+    let robots: Vec<(&str, Robot)> = ROBOT_NAMES.map(|name| (name, load_robot(name))).into();
     let mut walk_numbers = 0..;
     let mut is_chosen = || {
         walk_numbers
@@ -101,7 +104,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         jobs.add(&assembly, scenes)?;
     }
     for (index, walk) in uneven_walks.iter().enumerate() {
-        let assembly = Assembly::new(&robot(walk.robot));
+        let assembly = Assembly::new(&load_robot(walk.robot));
         let scene = walk.surface.scene(
             &walk_name(SURFACE_PREFIX, index),
             &assembly,
@@ -145,7 +148,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         .into_iter()
         .filter(|_| is_chosen())
         .collect();
-    let paper = Assembly::new(&robot("paper"));
+    let paper = Assembly::new(&load_robot("paper"));
     let scenes = pad_walks
         .iter()
         .enumerate()
@@ -216,7 +219,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         let by_surface = by_gait.entry(gait.clone()).or_default();
         by_surface.insert(surface.to_string(), displacement);
     }
-    for robot in surface::ROBOTS {
+    for robot in surface::ROBOT_NAMES {
         println!(
             "\nrobots/{robot}.toml\n{}",
             surfaces_table(robot, &stored_figures, &surfaces)
@@ -265,7 +268,7 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         ));
         faults.extend(describe_displacement_changes(&pads::stored(), &by_shape));
     }
-    let grain_robot = robot(grains::ROBOT);
+    let grain_robot = load_robot(grains::ROBOT);
     // A shortened run (`--one-in`) leaves out the pads with a grain.
     if one_in == 1 {
         let grain_answers = grains::measure(&grain_robot)?;
@@ -294,10 +297,10 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             crate_folder().join("servos.json"),
             format_blocks(&by_servos),
         )?;
-        println!("physics: written to tools/physics; `make docs` puts it into the pages");
+        println!("physics: written to tools/physics; `make docs` updates the pages");
     } else if one_in == 1 && stored_figures.walk_count() != figures.walk_count() {
         faults.push(format!(
-            "{} figures are kept, and there are {}; `make physics WRITE=1` keeps these",
+            "{} figures are stored, but there are {}; `make physics WRITE=1` stores these",
             stored_figures.walk_count(),
             figures.walk_count()
         ));
@@ -317,7 +320,7 @@ struct UnevenWalk {
 impl UnevenWalk {
     fn all(figures: &Figures) -> Vec<Self> {
         let mut walks = Vec::new();
-        for robot in surface::ROBOTS {
+        for robot in surface::ROBOT_NAMES {
             for (gait, level_displacement) in surface::walking_gaits(figures, robot) {
                 let walk_on = |surface| Self {
                     robot,
@@ -398,6 +401,6 @@ fn describe_difference(
 ) -> Option<String> {
     let (mm, deg) = stored.distance_to(&current);
     (mm > TOLERANCES.0 || deg > TOLERANCES.1).then(|| {
-        format!("{source} differs by {mm:.1} mm and {deg:.1} deg from what is kept; if that is meant, `make physics WRITE=1`")
+        format!("{source} differs by {mm:.1} mm and {deg:.1} deg from the stored displacement; if that is intended, `make physics WRITE=1`")
     })
 }

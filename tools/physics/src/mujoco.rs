@@ -62,10 +62,10 @@ pub struct RunningJudge {
 }
 
 impl Jobs {
-    /// Makes an empty list of walks.
+    /// Creates an empty list of walks.
     ///
     /// # Errors
-    /// Fails if the folder for the files cannot be made.
+    /// Fails if the folder for the files cannot be created.
     pub fn new() -> Result<Self, MujocoError> {
         Ok(Self {
             folder: tempfile::tempdir()?,
@@ -78,10 +78,10 @@ impl Jobs {
         self.count
     }
 
-    /// Adds a robot's walks: legs and scenes. Each scene must have a different name.
+    /// Adds a robot's walks, each with its legs and its scene. The names of all scenes must differ.
     ///
     /// # Errors
-    /// Fails if a file cannot be made or written.
+    /// Fails if a file cannot be generated or written.
     pub fn add(
         &mut self,
         assembly: &Assembly,
@@ -89,7 +89,7 @@ impl Jobs {
     ) -> Result<(), MujocoError> {
         let robot = assembly.robot();
         let neutral = robot.lizard().solve(&robot.neutral_pose());
-        let neutral = neutral.expect("every robot closes at neutral");
+        let neutral = neutral.expect("every loop closes in the neutral pose");
         let mut known_pieces: Vec<(Legs, Pieces)> = Vec::new();
         for (legs, scene) in walks {
             if known_pieces
@@ -131,7 +131,7 @@ impl Jobs {
 /// Returns the scene of two cycles of a gait, of which the second is measured.
 pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) -> Scene {
     let robot = assembly.robot();
-    let gait = robot.gait(gait).expect("a gait of the robot");
+    let gait = robot.gait(gait).expect("the robot has this gait");
     let strut = robot.strut_with_coil(&robot.parts().spring);
     Scene {
         name: name.to_owned(),

@@ -72,7 +72,7 @@ pub type ShapeDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 /// # Panics
 /// If `pads.json` is not a table of displacements.
 pub fn stored() -> ShapeDisplacements {
-    serde_json::from_str(include_str!("../pads.json")).expect("pads.json")
+    serde_json::from_str(include_str!("../pads.json")).expect("pads.json has the expected format")
 }
 
 /// Returns the table in Markdown: mm forward per cycle, or a dash if a walk is missing.

@@ -95,8 +95,8 @@ impl Variant {
     /// If robots/paper.toml does not have the lines that are replaced.
     pub fn robot(&self) -> Robot {
         let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
-        let mut text = text.expect("robots/paper.toml");
-        let own_mass = crate::robot("paper").ground().body.mass;
+        let mut text = text.expect("robots/paper.toml is readable");
+        let own_mass = crate::load_robot("paper").ground().body.mass;
         let mut replace = |old: &str, new: &str| {
             assert!(text.contains(old), "{old}");
             text = text.replacen(old, new, 1);
@@ -124,7 +124,10 @@ impl Variant {
     /// # Panics
     /// If the robot has no such gait.
     pub fn scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
-        let gait = assembly.robot().gait(gait).expect(gait);
+        let gait = assembly
+            .robot()
+            .gait(gait)
+            .expect("the robot has this gait");
         let mut scene = Scene {
             name: name.to_owned(),
             course: Some(Course::of(assembly.robot(), gait, 2, 1)),
@@ -143,7 +146,7 @@ impl Variant {
     /// If the robot has no such gait.
     pub fn model_displacement(&self, gait: &str) -> Displacement {
         let robot = self.robot();
-        let gait = robot.gait(gait).expect(gait);
+        let gait = robot.gait(gait).expect("the robot has this gait");
         gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
             .into()
     }
@@ -175,7 +178,8 @@ pub type ServoAnswers = BTreeMap<String, BTreeMap<String, Answers>>;
 /// # Panics
 /// If `servos.json` does not have the format of [`crate::text::format_blocks`].
 pub fn stored() -> ServoAnswers {
-    serde_json::from_str(include_str!("../servos.json")).expect("servos.json")
+    serde_json::from_str(include_str!("../servos.json"))
+        .expect("servos.json has the expected format")
 }
 
 /// Returns the table of all variants in Markdown, with a dash for a missing answer.

@@ -18,7 +18,7 @@ use crate::table::Component;
 
 /// The names of the robots that walk on other surfaces: the paper's robot on all of them, the others only on the
 /// highest edge and blocks.
-pub const ROBOTS: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
+pub const ROBOT_NAMES: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
 
 /// The smallest displacement in a cycle, mm and deg, of a gait that walks; other gaits only look around or wag the
 /// tail.
@@ -54,7 +54,7 @@ pub fn walking_gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacemen
             })
             .into();
     }
-    let loaded_robot = crate::robot(robot);
+    let loaded_robot = crate::load_robot(robot);
     let moving = loaded_robot
         .gaits()
         .iter()
@@ -63,7 +63,7 @@ pub fn walking_gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacemen
         let answers = figures.get(robot, gait.name(), Case::ALL[0]);
         (
             gait.name().to_owned(),
-            *answers.expect("an answer in figures.json"),
+            *answers.expect("figures.json has an answer"),
         )
     });
     // If two feet pull against the other two, the contact model has no answer and the gait has no definite path.
@@ -166,7 +166,7 @@ impl Surface {
         };
         let mut scene = scene_of(name, assembly, gait, Case::ALL[0]);
         scene.friction_ratio = robot.ground().friction_ratio;
-        let gait = robot.gait(gait).expect("a gait of the robot");
+        let gait = robot.gait(gait).expect("the robot has this gait");
         // On pads without a grain, a gait has its full speed from the first cycle on.
         let settling_cycles = match scene.friction_ratio == 1.0 {
             true => 0,
@@ -247,7 +247,8 @@ pub type SurfaceDisplacements = BTreeMap<String, BTreeMap<String, BTreeMap<Strin
 /// # Panics
 /// If `surfaces.json` is not a table of displacements.
 pub fn stored() -> SurfaceDisplacements {
-    serde_json::from_str(include_str!("../surfaces.json")).expect("surfaces.json")
+    serde_json::from_str(include_str!("../surfaces.json"))
+        .expect("surfaces.json has the expected format")
 }
 
 /// Returns MuJoCo's displacement of a gait of the paper's robot on a level floor.
@@ -256,7 +257,7 @@ pub fn stored() -> SurfaceDisplacements {
 /// If no displacement of the gait is stored.
 pub fn level_displacement(figures: &Figures, gait: &str) -> Displacement {
     let answers = figures.get("paper", gait, Case::ALL[0]);
-    answers.expect("an answer in figures.json").mujoco
+    answers.expect("figures.json has an answer").mujoco
 }
 
 /// Gaits that are known to keep less of their displacement than required, each with its robot and surface. On pads with

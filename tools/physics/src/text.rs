@@ -44,14 +44,14 @@ fn join_lines<T>(map: &BTreeMap<String, T>, text_of: impl Fn(&T) -> String) -> S
 }
 
 fn to_json<T: Serialize>(value: &T) -> String {
-    serde_json::to_string(value).expect("numbers")
+    serde_json::to_string(value).expect("numbers can be written as JSON")
 }
 
 /// Compares the text between `begin` and `end` in a file of the project with `expected_text`; replaces it if
 /// `BLESS_PHYSICS` is set.
 ///
 /// # Panics
-/// If the file has another text there, or neither `begin` nor `end`.
+/// If the text there differs, or if `begin` or `end` is missing.
 pub fn check_block(path: &str, begin: &str, end: &str, expected_text: &str) {
     let file = crate_folder().join("../..").join(path);
     let text = fs::read_to_string(&file).expect(path);

@@ -7,7 +7,7 @@ use crate::case::{Case, Legs};
 use crate::figures::Displacement;
 use crate::mujoco::scene_of;
 
-/// A gait that is walked in a case.
+/// The walk of a gait in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Walk {
     /// The gait's name.
@@ -30,7 +30,7 @@ impl Walk {
     /// # Panics
     /// If the robot has no such gait.
     pub fn model_displacement(&self, robot: &Robot) -> Option<Displacement> {
-        let gait = robot.gait(&self.gait).expect("a gait of the robot");
+        let gait = robot.gait(&self.gait).expect("the robot has this gait");
         let simulate = || gait.simulate_cycle(&self.case.ground(robot)).travel;
         self.is_decided.then(|| simulate().into())
     }

@@ -10,8 +10,8 @@ use lizard_physics::pads::{self, PadShape, SURFACES};
 use lizard_physics::surface::{self, Surface, surfaces_table};
 use lizard_physics::text::{check_block, format_blocks, format_lines};
 use lizard_physics::{
-    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOTS, crate_folder, displacement_table,
-    expected_table, robot, table, walks_of,
+    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOT_NAMES, crate_folder,
+    displacement_table, expected_table, load_robot, table, walks_of,
 };
 
 /// Compares the text between a marker and the next end marker of a page with `expected_text`.
@@ -23,8 +23,8 @@ fn check_page(page: &str, marker: &str, expected_text: &str) {
 #[test]
 fn the_pages_have_the_displacements_by_the_model_and_by_mujoco() {
     let figures = Figures::stored();
-    for name in ROBOTS {
-        let robot = robot(name);
+    for name in ROBOT_NAMES {
+        let robot = load_robot(name);
         let fenced_table = format!("```text\n{}```\n", table(name, &robot, &figures));
         check_page(
             "docs/judges.md",
@@ -39,7 +39,7 @@ fn the_pages_have_the_displacements_by_the_model_and_by_mujoco() {
         }
     }
     let surfaces = surface::stored();
-    for name in surface::ROBOTS {
+    for name in surface::ROBOT_NAMES {
         let table = surfaces_table(name, &figures, &surfaces);
         let marker = format!("surfaces of robots/{name}.toml");
         check_page("docs/judges.md", &marker, &table);
@@ -48,7 +48,7 @@ fn the_pages_have_the_displacements_by_the_model_and_by_mujoco() {
     let changes = assumptions::table(&figures, &surfaces, &assumptions::stored());
     let fenced = format!("```text\n{changes}```\n");
     check_page("docs/limits.md", "assumptions by MuJoCo", &fenced);
-    let robot = robot("paper");
+    let robot = load_robot("paper");
     check_page(
         "docs/measure.md",
         "expected of robots/paper.toml",
@@ -59,10 +59,10 @@ fn the_pages_have_the_displacements_by_the_model_and_by_mujoco() {
 #[test]
 fn the_stored_figures_are_written_as_they_are_read() {
     let file = crate_folder().join("figures.json");
-    let text = std::fs::read_to_string(&file).expect("figures.json");
+    let text = std::fs::read_to_string(&file).expect("figures.json is readable");
     let new_text = Figures::stored().to_json();
     if std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&file, new_text).expect("figures.json");
+        std::fs::write(&file, new_text).expect("figures.json is readable");
     } else {
         assert_eq!(text, new_text);
     }
@@ -72,7 +72,7 @@ fn the_stored_figures_are_written_as_they_are_read() {
 fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_floor() {
     let (figures, stored_surfaces) = (Figures::stored(), surface::stored());
     let mut walk_count = 0;
-    for name in surface::ROBOTS {
+    for name in surface::ROBOT_NAMES {
         for (gait, level) in surface::walking_gaits(&figures, name) {
             for surface in Surface::of(name) {
                 let displacement = stored_surfaces[name][&gait][&surface.to_string()];
@@ -92,7 +92,7 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
     assert_eq!(
         stored_counts.sum::<usize>(),
         walk_count,
-        "and no others are kept"
+        "and no others are stored"
     );
     assert!(walk_count > 100, "{walk_count}");
     // The check reports a robot that cannot move or turn at an edge, and a robot that turns in the wrong direction.
@@ -113,10 +113,10 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
 fn every_foot_of_a_gait_that_does_not_only_turn_starts_before_the_edge_and_ends_beyond_it() {
     let figures = Figures::stored();
     let mut turning_gaits = Vec::new();
-    for name in surface::ROBOTS {
-        let feet = robot(name).ground().feet.positions([0.0; 4]);
+    for name in surface::ROBOT_NAMES {
+        let feet = load_robot(name).ground().feet.positions([0.0; 4]);
         for (gait, level) in surface::walking_gaits(&figures, name) {
-            let crossing = Crossing::of(&robot(name), level, 0);
+            let crossing = Crossing::of(&load_robot(name), level, 0);
             if !crossing.is_crossed {
                 turning_gaits.push(gait);
                 continue;
@@ -211,8 +211,8 @@ fn every_other_assumption_and_pad_shape_is_stored_in_the_format_that_is_written(
 fn every_walk_is_stored_and_close_to_the_model() {
     let figures = Figures::stored();
     let mut count = 0;
-    for name in ROBOTS {
-        let robot = robot(name);
+    for name in ROBOT_NAMES {
+        let robot = load_robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
             let answers_for = |case| figures.get(name, gait.name(), case);
             let is_decided =
@@ -237,17 +237,17 @@ fn every_walk_is_stored_and_close_to_the_model() {
             }
         }
     }
-    assert_eq!(figures.walk_count(), count, "and no others are kept");
+    assert_eq!(figures.walk_count(), count, "and no others are stored");
 }
 
 #[test]
 fn the_stored_answers_of_the_model_are_up_to_date() {
-    let (figures, robot) = (Figures::stored(), robot("paper"));
+    let (figures, robot) = (Figures::stored(), load_robot("paper"));
     let mut count = 0;
     for walk in walks_of(&robot) {
         let answers = figures
             .get("paper", &walk.gait, walk.case)
-            .expect("a stored answer");
+            .expect("the walk is stored");
         assert_eq!(answers.model.is_some(), walk.is_decided, "{}", walk.gait);
         let (Some(stored), Some(computed)) = (answers.model, walk.model_displacement(&robot))
         else {
@@ -272,8 +272,8 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
         feet,
     };
     let mut count = 0;
-    for name in ROBOTS {
-        for gait in robot(name)
+    for name in ROBOT_NAMES {
+        for gait in load_robot(name)
             .gaits()
             .iter()
             .filter(|gait| gait.has_movement())
@@ -316,11 +316,14 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
 
 #[test]
 fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
-    let text =
-        std::fs::read_to_string(crate_folder().join("../../robots/paper.toml")).expect("paper");
-    let table = expected_table(&robot("paper"));
+    let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"))
+        .expect("robots/paper.toml is readable");
+    let table = expected_table(&load_robot("paper"));
     let keys = table.lines().skip(2).flat_map(|line| {
-        let cell = line.rsplit(" | ").next().expect("a key");
+        let cell = line
+            .rsplit(" | ")
+            .next()
+            .expect("each row ends with its keys");
         cell.trim_end_matches(" |")
             .split(", ")
             .map(|key| key.trim_matches('`'))
@@ -333,11 +336,11 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
         // unknown.
         let wrong_text = match text.contains(&header) {
             true => {
-                let header_start = text.find(&header).expect("the header") + 1;
+                let header_start = text.find(&header).expect("the text contains the header") + 1;
                 let body_start = header_start
                     + text[header_start..]
                         .find('\n')
-                        .expect("the end of the header's line")
+                        .expect("the header's line ends")
                     + 1;
                 let end = text[body_start..]
                     .find("\n[")

@@ -4,7 +4,7 @@
 
 use lizard_physics::grains::{self, GAITS, GrainAnswers, RATIOS};
 use lizard_physics::text::check_block;
-use lizard_physics::{crate_folder, robot};
+use lizard_physics::{crate_folder, load_robot};
 
 /// Returns the speeds of a gait at a friction ratio: by the model, if it has an answer, and by MuJoCo. `component` is
 /// the index in the displacement: 0 for mm/s ahead, 2 for deg/s of turn.
@@ -14,9 +14,12 @@ fn speeds_by_model_and_mujoco(
     ratio: f64,
     component: usize,
 ) -> Vec<f64> {
-    let period = robot(grains::ROBOT).gait(gait).expect(gait).period();
+    let period = load_robot(grains::ROBOT)
+        .gait(gait)
+        .expect("the robot has this gait")
+        .period();
     let index = RATIOS.iter().position(|known_ratio| *known_ratio == ratio);
-    let answers = stored[gait][index.expect("a ratio of the table")];
+    let answers = stored[gait][index.expect("the ratio is one of the table's")];
     let displacements = answers.model.into_iter().chain([answers.mujoco]);
     displacements
         .map(|displacement| displacement.0[component] / period)
@@ -25,7 +28,7 @@ fn speeds_by_model_and_mujoco(
 
 #[test]
 fn the_page_and_the_robots_file_have_the_speeds_by_the_model_and_by_mujoco() {
-    let table = grains::table(&robot(grains::ROBOT), &grains::stored());
+    let table = grains::table(&load_robot(grains::ROBOT), &grains::stored());
     let begin = "<!-- speeds of robots/grain.toml -->\n```text\n";
     check_block("docs/gaits.md", begin, "```\n<!-- end -->", &table);
     let comment: String = table.lines().map(|line| format!("# {line}\n")).collect();
@@ -36,7 +39,8 @@ fn the_page_and_the_robots_file_have_the_speeds_by_the_model_and_by_mujoco() {
 #[test]
 fn every_answer_is_stored_in_the_format_that_is_written_and_close_to_the_model() {
     let stored = grains::stored();
-    let text = std::fs::read_to_string(crate_folder().join("grains.json")).expect("grains.json");
+    let text = std::fs::read_to_string(crate_folder().join("grains.json"))
+        .expect("grains.json is readable");
     assert_eq!(text, grains::to_json(&stored));
     assert_eq!(grains::disagreements(&stored), Vec::<String>::new());
     for (gait, _) in GAITS {
@@ -46,9 +50,9 @@ fn every_answer_is_stored_in_the_format_that_is_written_and_close_to_the_model()
 
 #[test]
 fn the_stored_answers_of_the_model_are_up_to_date() {
-    let (stored, robot) = (grains::stored(), robot(grains::ROBOT));
+    let (stored, robot) = (grains::stored(), load_robot(grains::ROBOT));
     for (name, _) in GAITS {
-        let gait = robot.gait(name).expect(name);
+        let gait = robot.gait(name).expect("the robot has this gait");
         for (ratio, answers) in RATIOS.into_iter().zip(&stored[name]) {
             let current = grains::model_displacement(&robot, gait, ratio);
             assert_eq!(current.is_some(), answers.model.is_some(), "{name} {ratio}");
@@ -68,7 +72,7 @@ fn the_stored_answers_of_the_model_are_up_to_date() {
 fn on_pads_with_a_grain_the_robot_runs_at_90_mm_per_second_and_still_turns() {
     let stored = grains::stored();
     assert_eq!(
-        robot(grains::ROBOT).ground().friction_ratio,
+        load_robot(grains::ROBOT).ground().friction_ratio,
         1.5,
         "robots/grain.toml"
     );

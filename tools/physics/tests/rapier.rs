@@ -5,7 +5,7 @@
 //! that are dragged over the floor. The engine is no longer compiled; its results stay, so that a wrong change of the
 //! model is noticed. Gaits that depend on inertia were simulated at a slower pace.
 
-use lizard_physics::{Displacement, robot};
+use lizard_physics::{Displacement, load_robot};
 use lizard_robot::{Body, Feet, Ground};
 
 /// The compared gaits; no gait is a mirror image or the reversal of another.
@@ -21,16 +21,21 @@ fn ground_with_280_g() -> Ground {
             mass: 280.0,
             ..Body::DEFAULT
         },
-        ..*robot("paper").ground()
+        ..*load_robot("paper").ground()
     }
 }
 
 /// Asserts that the model's displacement of each gait is within `mm` and `deg` of the engine's, `expected`.
 fn assert_agreement(ground: &Ground, expected: &Displacements, mm: f64, deg: f64) {
-    let paper = robot("paper");
+    let paper = load_robot("paper");
     for (name, displacement) in GAITS.into_iter().zip(expected) {
-        let by_model =
-            Displacement::from(paper.gait(name).expect(name).simulate_cycle(ground).travel);
+        let by_model = Displacement::from(
+            paper
+                .gait(name)
+                .expect("the robot has this gait")
+                .simulate_cycle(ground)
+                .travel,
+        );
         let (distance, turn) = by_model.distance_to(&Displacement(*displacement));
         assert!(
             distance <= mm && turn <= deg,
@@ -63,9 +68,9 @@ fn legs_mounted_outward_move_as_in_the_engine() {
 
 #[test]
 fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
-    let (paper, tuned) = (robot("paper"), robot("own-gaits"));
-    let stride = tuned.gait("stride").expect("stride");
-    let walk = paper.gait("walk").expect("walk");
+    let (paper, tuned) = (load_robot("paper"), load_robot("own-gaits"));
+    let stride = tuned.gait("stride").expect("own-gaits.toml has this gait");
+    let walk = paper.gait("walk").expect("paper.toml has this gait");
     let by_model = Displacement::from(stride.simulate_cycle(&ground_with_280_g()).travel);
     let (distance, turn) = by_model.distance_to(&Displacement([40.95, -0.44, 0.0]));
     assert!(distance <= 0.5 && turn <= 0.3, "{by_model:?}");

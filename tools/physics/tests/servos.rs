@@ -1,4 +1,4 @@
-//! Tests of the stored displacements with servos that cannot follow, by the contact model and by MuJoCo.
+//! Tests of the stored displacements with servos that lag behind their pulses, by the contact model and by MuJoCo.
 //!
 //! With `BLESS_PHYSICS=1`, as in `make docs`, the table is written into docs/judges.md.
 
@@ -7,7 +7,7 @@ use lizard_physics::servos::{GAITS, Variant, servos_table, stored};
 use lizard_physics::text::{check_block, format_blocks};
 
 #[test]
-fn a_gait_with_servos_that_cannot_follow_loses_as_much_in_the_model_as_in_mujoco() {
+fn a_gait_with_lagging_servos_loses_as_much_in_the_model_as_in_mujoco() {
     let stored = stored();
     let mut answer_count = 0;
     for variant in Variant::ALL {
@@ -15,7 +15,7 @@ fn a_gait_with_servos_that_cannot_follow_loses_as_much_in_the_model_as_in_mujoco
             let answers = stored[variant.name][gait];
             let name = variant.name;
             assert_eq!(variant.disagreement(gait, &answers), None, "{name}, {gait}");
-            let stored_displacement = answers.model.expect("a displacement");
+            let stored_displacement = answers.model.expect("the model has a displacement");
             let displacement = variant.model_displacement(gait);
             let error = (stored_displacement.0[component] - displacement.0[component]).abs();
             assert!(
@@ -34,7 +34,8 @@ fn a_gait_with_servos_that_cannot_follow_loses_as_much_in_the_model_as_in_mujoco
     }
     let stored_count: usize = stored.values().map(std::collections::BTreeMap::len).sum();
     assert_eq!(stored_count, answer_count, "and no others are stored");
-    let file = std::fs::read_to_string(crate_folder().join("servos.json")).expect("servos.json");
+    let file = std::fs::read_to_string(crate_folder().join("servos.json"))
+        .expect("servos.json is readable");
     assert_eq!(file, format_blocks(&stored));
 }
 

@@ -6,10 +6,10 @@ use crate::event::{MS, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Longest time from the answer to an order until all four servos have pulses.
+/// Longest time from the answer to a motion command until all four servos have pulses.
 const MAX_WAKE_TIME: Time = 600 * MS;
 
-/// Time after an answer that promises no pulses in which no pulse may begin.
+/// Time during which no pulse may begin after an answer that promises no pulses.
 pub(crate) const NO_PULSES_TIME: Time = 140 * MS;
 
 /// Longest time from `rest` until the complete record of the rest pose is in the EEPROM.

@@ -15,7 +15,7 @@ const FAULT_WORDS: [&str; 8] = [
 pub fn fault_code(fault: &str) -> Result<u8, String> {
     let code = FAULT_WORDS.iter().position(|word| *word == fault);
     code.map(|code| code as u8)
-        .ok_or_else(|| format!("fault={fault} is not known"))
+        .ok_or_else(|| format!("fault={fault} is unknown"))
 }
 
 /// Checks that the LED shows only the pattern of the fault `code` in `from..to`; code 0 means no fault. `edges` are the

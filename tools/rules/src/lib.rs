@@ -3,10 +3,9 @@
 //! Three tools test these rules: the model checker (`tools/explore`), the search with combined faults on the simulated
 //! UNO (`make trouble`) and the fuzzer (`tools/fuzz`). Each tool converts the behaviour of its robot to a sequence of
 //! [`Event`]s with times, and the [`Observer`] judges these events. The observer does not know the robot's inner state,
-//! but only lines, pulses, resets, the supply and writes to the EEPROM.
+//! only lines, pulses, resets, the supply and writes to the EEPROM.
 //!
-//! The list of rules, [`Rule`], also contains rules about the inner state. Only the tools that see the inner state
-//! check these.
+//! [`Rule`] also lists rules about the inner state. Only the tools that see the inner state check these.
 
 mod answers;
 mod event;

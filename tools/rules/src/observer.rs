@@ -9,7 +9,7 @@ use crate::rule::{BrokenRule, Rule};
 use crate::servos::{Permission, ServoHistory};
 use crate::supply::SupplyHistory;
 
-/// The robot's limits, and the accuracy with which a tool observes the robot.
+/// The limits of the robot, and of the accuracy with which a tool observes it.
 #[derive(Clone, Debug)]
 pub struct Limits {
     /// The largest change of a servo's pulse from one frame to the next, cycles.
@@ -82,7 +82,7 @@ pub struct Observer {
     pub(crate) disturbed_until: Time,
     /// Start and end of each recent stall of main.
     pub(crate) stalls: Vec<(Time, Time)>,
-    /// Time of the last order that was not refused.
+    /// Time of the last motion, stop or rest command that was not refused.
     pub(crate) ordered_at: Time,
     /// Time of the last `rest` that was not refused.
     pub(crate) rest_ordered_at: Time,
@@ -96,7 +96,7 @@ pub struct Observer {
     /// True if the last motion is a gait other than `stand`, or a routine: `deadman` ends these.
     pub(crate) is_gait_or_routine: bool,
     pub(crate) has_unsaved_settings: bool,
-    /// Number of motions begun since the last reset, less the number of motions reported as done.
+    /// Number of motions begun since the last reset, minus the number of motions reported as done.
     pub(crate) unfinished_motion_count: i32,
     pub(crate) permission: Permission,
     pub(crate) servos: [ServoHistory; 4],
@@ -106,7 +106,7 @@ pub struct Observer {
     pub(crate) supply: SupplyHistory,
     pub(crate) reports: Reports,
     pub(crate) pending: PendingPromises,
-    /// Time of the first of consecutive `rest` commands; `NEVER` after any other order.
+    /// Time of the first of consecutive `rest` commands; `NEVER` after any other command.
     pub(crate) first_rest_at: Time,
     pub(crate) brown_out_times: [Time; 5],
 }
@@ -158,7 +158,7 @@ impl Observer {
         }
     }
 
-    /// Observes the pulses of a frame, and the frame's end. `widths` are the pulse widths of A1 to A4 in cycles, 0 for
+    /// Observes the pulses of a frame and the frame's end. `widths` are the pulse widths of A1 to A4 in cycles, 0 for
     /// no pulse.
     pub fn observe_frame(&mut self, start: Time, widths: [u16; 4]) {
         for (servo, width) in widths
@@ -195,7 +195,7 @@ impl Observer {
         std::mem::take(&mut self.broken_rules)
     }
 
-    /// Records that a rule is broken.
+    /// Records a broken rule.
     pub(crate) fn fail(&mut self, rule: Rule, observation: impl Into<String>) {
         self.broken_rules.push(BrokenRule::new(rule, observation));
     }
@@ -210,7 +210,7 @@ impl Observer {
         !self.permission.is_granted
     }
 
-    /// The time at which a fault stopped the robot; `None` if no fault has occurred, or if an order has ended the stop.
+    /// The time at which a fault stopped the robot; `None` if no fault has occurred, or if a command has ended the stop.
     pub const fn stopped_since(&self) -> Option<Time> {
         self.reports.stopped_at
     }
@@ -314,7 +314,7 @@ impl Observer {
             } => self.judge_answer(line, effect, asked_at, answer),
             Event::Unanswered(asked_at, line) => {
                 if !self.was_disturbed_since(asked_at - MS) {
-                    self.fail(Rule::AnswersAlways, format!("no answer to {line}"));
+                    self.fail(Rule::AnswersAgain, format!("no answer to {line}"));
                 }
             }
             Event::LinePrinted(first_byte_at, line) => self.judge_printed_line(first_byte_at, line),

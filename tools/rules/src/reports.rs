@@ -9,14 +9,14 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// The last stop by a fault, and whether the console has reported it.
+/// The last stop by a fault, and its report on the console.
 #[derive(Clone, Debug)]
 pub(crate) struct Reports {
-    /// Time at which a fault stopped the robot; `None` if no fault has occurred since the last order to move.
+    /// Time at which a fault stopped the robot; `None` if no fault has occurred since the last motion command.
     pub stopped_at: Option<Time>,
     /// True if the console has reported the cause of the stop.
     pub is_reported: bool,
-    /// True if an order after the report may not have reached the robot. If the robot is then still stopped, it does
+    /// True if a command after the report may not have reached the robot. If the robot is then still stopped, it does
     /// not report the stop again.
     may_still_be_stopped: bool,
     /// Time of the last report of a fault on the console.
@@ -50,7 +50,7 @@ impl Reports {
         }
     }
 
-    /// Records an order to move, which ends a stop. If `is_certain` is false, the order may have been lost.
+    /// Records a motion command, which ends a stop. If `is_certain` is false, the command may have been lost.
     pub(crate) const fn note_order(&mut self, is_certain: bool) {
         let was_reported = self.stopped_at.is_some() && self.is_reported;
         self.may_still_be_stopped = !is_certain && (was_reported || self.may_still_be_stopped);
@@ -65,7 +65,7 @@ impl Observer {
         if is_answer(line) && !line.contains("# lizard ") {
             self.unanswered_line_count -= 1;
             if self.unanswered_line_count < 0 {
-                self.fail(Rule::OneAnswer, format!("unasked: {line}"));
+                self.fail(Rule::OneAnswer, format!("unsolicited answer: {line}"));
             }
             if self.unanswered_line_count > 0 {
                 // The robot may have read the next command only now, after this answer.
@@ -77,7 +77,7 @@ impl Observer {
             self.reports.is_reported = true;
             self.reports.reported_at = self.now;
             if line.contains("no line for") {
-                // Soon after an order, the line may report a stop that the order has already ended.
+                // Soon after a command, the line may report a stop that the command has already ended.
                 if first_byte_at - self.ordered_at >= self.limits.max_queue_time {
                     self.reports.note_stop(self.now);
                 }
@@ -94,7 +94,7 @@ impl Observer {
         if line == "# done" {
             self.unfinished_motion_count -= 1;
             if self.unfinished_motion_count < 0 {
-                self.fail(Rule::DoneOncePerMotion, "once too often");
+                self.fail(Rule::DoneOncePerMotion, "one report too many");
             }
         }
         if let Some(report) = line.strip_prefix("# supply: ") {
@@ -109,7 +109,7 @@ impl Observer {
         }
         let reports_rest =
             line.ends_with("pulses ended") || line.contains("several times in a row");
-        // If an order came while the line waited or was printed, the line no longer describes the robot.
+        // If a command arrived while the line waited or was printed, the line no longer describes the robot.
         if reports_rest && first_byte_at - self.ordered_at > self.limits.max_queue_time {
             self.permission.schedule_expiry(self.now);
         }
@@ -140,7 +140,7 @@ impl Observer {
         let stopped_at = self.reports.stopped_at;
         let is_due = |time| self.now - time > self.limits.max_report_time;
         if stopped_at.is_some_and(is_due) && !self.reports.is_reported {
-            self.fail(Rule::StopReported, "nothing on the console");
+            self.fail(Rule::StopReported, "no report on the console");
         }
     }
 

@@ -1,4 +1,4 @@
-//! The rules that the robot must keep, each with a sentence for the user.
+//! The rules that the robot must keep, each as a sentence for the user.
 
 use std::fmt;
 
@@ -21,47 +21,47 @@ macro_rules! rules {
 }
 
 rules! {
-    KeepsRunning = "the program neither crashes nor halts, and uses the board as the board allows";
+    KeepsRunning = "the program neither crashes nor halts, and never uses the chip in a way that it does not allow";
     OneAnswer = "every line gets exactly one answer";
-    AnswersAlways = "the console always answers again";
-    PulsesPermitted = "pulses begin only by an order, by boot three seconds after a start, or at power-on";
-    WakeOneByOne = "no two servos begin in one frame, except after a hang";
-    HeldAfterHang = "after a hang the servos are held where they were";
+    AnswersAgain = "the console answers again after every disturbance";
+    PulsesPermitted = "pulses begin only on a command, by boot three seconds after a start, or at power-on";
+    WakeOneByOne = "no two servos wake in the same frame, except after a hang";
+    HeldAfterHang = "after a hang the servos hold their positions";
     ResetAfterHang = "a hang that ends the pulses ends in a reset";
     NoNeedlessReset = "a hang that does not end the pulses causes no reset";
     MotionHasPulses = "a robot without pulses never answers that it moves";
-    StatusNamesCause = "status says rest or a fault where there are no pulses";
-    NoPulsesInRest = "status says rest only where there are no pulses";
+    StatusNamesCause = "status says rest or a fault when there are no pulses";
+    NoPulsesInRest = "status says rest only when there are no pulses";
     RestEndsPulses = "rest ends the pulses within a frame";
-    StandWorks = "after stand the robot stands, in any earlier state";
+    StandWorks = "after stand the robot stands, whatever its state before";
     RefusalChangesNothing = "a refused command changes nothing";
     InvalidRefused = "a line that is not a valid command is refused";
-    OtherRateIgnored = "a line at another rate than the robot's does nothing";
-    RateFound = "a robot that is asked again and again at one rate answers";
-    NoNeedlessRefusal = "no command is refused for a supply that allows it";
+    OtherRateIgnored = "a line sent at another baud rate than the robot's has no effect";
+    RateFound = "a robot that is queried repeatedly at one baud rate eventually answers";
+    NoNeedlessRefusal = "no command is refused because of the supply while the supply is sufficient";
     LoadedLimitsValid = "load accepts only settings that limit would accept";
-    DeadmanNotEarly = "a gait ends without a command only if no line came for the time of deadman";
-    DeadmanNotLate = "a gait goes on for no longer than deadman and 40 ms without a command";
-    OnlySentLines = "no line is acted on that nobody sent";
+    DeadmanNotEarly = "a gait ends without a command only if no line arrived for the time of deadman";
+    DeadmanNotLate = "without a command a gait ends at most 40 ms after the time of deadman";
+    OnlySentLines = "the robot acts only on lines that were sent";
     StopRepeated = "a stop that a link has lost is sent again until it is answered";
     CountedMotionEnds = "a motion with a count comes to an end";
     ContactsOnlyInRoutine = "a contact moves the robot only within a routine";
-    DoneOncePerMotion = "no motion is said to be done more often than motions were begun";
-    SecondRestWritesNothing = "rest, said again, writes nothing";
-    PulseWidth = "no pulse is cut short or too long";
-    SlewLimit = "no pulse is farther from the one before than the slew limit";
-    PulsePeriod = "whatever arrives on the line, pulses begin 20 ms apart to the cycle";
-    NoLeapByReset = "no reset of a held robot makes a servo leap";
-    WakesInRestPose = "a robot that has rested wakes in the pose of its rest, whatever reset it";
-    RestPoseKept = "where the robot rests stays in the memory, also after a reset";
-    StopReported = "what stopped the robot is in status and on the console until it is told to move";
-    GuardFaultNamed = "status names a fault wherever the guard holds";
-    LedShowsFault = "the LED shows the fault that status tells";
-    BrownOutsEnd = "brown-outs in a row come to an end";
-    LowForSixFrames = "the supply stops or rests the robot only by six frames below its voltage";
-    SafeWrites = "the EEPROM is written only above its voltage and after the first reading";
+    DoneOncePerMotion = "no more motions are reported done than have begun";
+    SecondRestWritesNothing = "a repeated rest writes nothing to the EEPROM";
+    PulseWidth = "no pulse is too short or too long";
+    SlewLimit = "no pulse width differs from the previous one by more than the slew limit";
+    PulsePeriod = "whatever arrives on the serial line, pulses begin 20 ms apart, to the cycle";
+    NoLeapByReset = "no reset of a robot with pulses makes a servo jump";
+    WakesInRestPose = "a robot that has rested wakes in its rest pose, whatever reset it";
+    RestPoseKept = "the rest pose stays in the EEPROM, even across a reset";
+    StopReported = "status and the console name the cause of a stop until the next motion command";
+    GuardFaultNamed = "status names a fault whenever the guard holds the robot";
+    LedShowsFault = "the LED shows the fault that status reports";
+    BrownOutsEnd = "a series of brown-outs comes to an end";
+    LowForSixFrames = "a low supply stops or rests the robot only after six frames below the threshold";
+    SafeWrites = "the EEPROM is written only after the supply was measured and while it is above the writing threshold";
     PosesGuarded = "every pose that is sent has passed the guard";
-    MemoryWhole = "the memory holds whole records or nothing, and only what was saved";
+    MemoryValid = "the EEPROM holds valid records or nothing, and only what was saved";
 }
 
 /// A broken rule.
@@ -74,7 +74,7 @@ pub struct BrokenRule {
 }
 
 impl BrokenRule {
-    /// Creates a broken rule from the rule and the observation that breaks the rule.
+    /// Creates a report of a rule broken by an observation.
     pub fn new(rule: Rule, observation: impl Into<String>) -> Self {
         let observation = observation.into();
         Self { rule, observation }

@@ -16,13 +16,13 @@ const MAX_DEADMAN_DELAY: Time = 40 * MS;
 /// Largest difference between consecutive pulses of a servo that stands still, cycles.
 const MAX_STEADY_CHANGE: u32 = 16;
 
-/// Longest time from a `rest` order to the end of the last pulse.
+/// Longest time from a `rest` command to the end of the last pulse.
 const MAX_TIME_TO_REST: Time = 45 * MS;
 
-/// Shortest time from a reset until `boot` acts: 3 s less about a frame, since the first tick comes early.
+/// Shortest time from a reset until `boot` acts: 3 s minus about a frame, since the first tick comes early.
 const MIN_BOOT_TIME: Time = 2_975 * MS;
 
-/// Shortest time between the first pulses of two servos that wake: 0.1 s less about a frame.
+/// Shortest time between the first pulses of two servos that wake: 0.1 s minus about a frame.
 const MIN_WAKE_GAP: Time = 75 * MS;
 
 /// Longest time from the end of the pulses in a hang to the reset: the watchdog's second stage and a frame.
@@ -33,7 +33,7 @@ const MAX_TIME_TO_RESET: Time = 160 * MS;
 pub(crate) struct Permission {
     /// True while pulses may begin.
     pub is_granted: bool,
-    /// The time at which the permission ends, and true if an order has set this time; `None` if the permission has no
+    /// The time at which the permission ends, and true if a command has set this time; `None` if the permission has no
     /// end.
     expiry: Option<(Time, bool)>,
     /// The earliest time at which `boot` grants the permission; `None` if `boot` does not grant it.
@@ -50,8 +50,8 @@ impl Permission {
         }
     }
 
-    /// Cancels an end of the permission that an order has set. Another event came first, so the robot may not have
-    /// carried out the order.
+    /// Cancels an end of the permission that a command has set. Another event came first, so the robot may not have
+    /// carried out the command.
     pub(crate) fn cancel_order(&mut self) {
         self.expiry.take_if(|(_, is_order)| *is_order);
     }
@@ -92,7 +92,7 @@ impl Permission {
     }
 }
 
-/// The event since a servo's last whole pulse that decides which rule limits the next pulse's leap.
+/// The event since a servo's last whole pulse that selects the rule for the next change of its width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interruption {
     /// No event: the slew limit applies.
@@ -140,7 +140,7 @@ impl ServoHistory {
         blocked_until: NEVER,
     };
 
-    /// Notes that interrupts are blocked until a time, so that pulses may be missing.
+    /// Records that interrupts are blocked until a time, so that pulses may be missing.
     pub(crate) fn note_blocked_interrupts(&mut self, until: Time) {
         self.blocked_until = until;
         if self.interruption == Interruption::Nothing {
@@ -148,15 +148,15 @@ impl ServoHistory {
         }
     }
 
-    /// Forgets a reset: after an order to rest, the reset's rule for the next pulse no longer applies.
+    /// Forgets a reset: after a `rest` command, the reset's rule for the next pulse no longer applies.
     pub(crate) fn forget_reset(&mut self) {
         if self.interruption == Interruption::Reset {
             self.interruption = Interruption::Unknown;
         }
     }
 
-    /// Notes a restart. `has_hung` is true if the program hung before the restart, `keeps_position` if the robot keeps
-    /// the servo's position in RAM, `is_rest_pose_saved` if the EEPROM contains the servo's present rest pose.
+    /// Records a restart. `has_hung` is true if the program hung before the restart, `keeps_position` if the robot keeps
+    /// the servo's position in RAM, `is_rest_pose_saved` if the EEPROM contains the servo's current rest pose.
     pub(crate) fn note_restart(
         &mut self,
         has_hung: bool,
@@ -266,7 +266,7 @@ impl Observer {
         if !self.permission.is_granted {
             self.fail(Rule::PulsesPermitted, format!("{name} begins"));
         }
-        // The frame after a hang is completed even if an order to rest comes within the frame.
+        // The frame after a hang is completed even if a `rest` command arrives within it.
         let hung_until = self.started_at.max(servo.last_whole_start);
         let has_rested =
             self.rest_ordered_at > hung_until && now - self.rest_ordered_at > MAX_TIME_TO_REST;
@@ -275,10 +275,10 @@ impl Observer {
             && servo.last_whole_start > NEVER
             && now - servo.last_whole_start < 1_000 * MS
             && !has_rested;
-        let has_no_order = self.ordered_at < servo.last_whole_start;
+        let has_no_command = self.ordered_at < servo.last_whole_start;
         let leap = pulse.width.abs_diff(servo.last_whole_width);
         if is_after_hang
-            && has_no_order
+            && has_no_command
             && !pulse.is_cut
             && leap > self.limits.max_leap_cycles[pulse.servo]
         {

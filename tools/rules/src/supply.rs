@@ -4,7 +4,7 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Time for which the supply must be low before the robot may react: six frames, less one frame before the first
+/// Time for which the supply must be low before the robot may react: six frames, minus one frame before the first
 /// reading and one frame after the last.
 const MIN_LOW_TIME: Time = 80 * MS;
 
@@ -19,7 +19,7 @@ const FIRST_READING_TIME: Time = 20 * MS;
 pub(crate) struct SupplyHistory {
     /// Each voltage, mV, with the time of its start.
     voltages: Vec<(Time, u32)>,
-    /// The time of the last change from or to a voltage that is not good.
+    /// The time of the last change from or to a voltage below the good range.
     pub last_poor_change: Time,
 }
 
@@ -34,7 +34,7 @@ impl Default for SupplyHistory {
 
 impl SupplyHistory {
     pub(crate) fn record(&mut self, time: Time, mv: u32, min_good_mv: u32) {
-        if self.present_mv() < min_good_mv || mv < min_good_mv {
+        if self.current_mv() < min_good_mv || mv < min_good_mv {
             self.last_poor_change = time;
         }
         let is_old = |pair: &[(Time, u32)]| pair[1].0 < time - 2_000 * MS;
@@ -44,13 +44,13 @@ impl SupplyHistory {
         self.voltages.push((time, mv));
     }
 
-    fn present_mv(&self) -> u32 {
+    fn current_mv(&self) -> u32 {
         self.voltages.last().map_or(u32::MAX, |(_, mv)| *mv)
     }
 
     /// True if the supply has been at or above `min_good_mv` since a time.
     pub(crate) fn is_good_since(&self, since: Time, min_good_mv: u32) -> bool {
-        self.present_mv() >= min_good_mv && self.last_poor_change <= since
+        self.current_mv() >= min_good_mv && self.last_poor_change <= since
     }
 
     /// Returns the total time within `from..to` for which the supply was below `mv`.
@@ -77,7 +77,7 @@ impl SupplyHistory {
     /// level, otherwise zero or negative.
     pub(crate) fn times_since_crossed(&self, levels_mv: [u32; 3], now: Time) -> [Time; 3] {
         levels_mv.map(|mv| {
-            let is_low = self.present_mv() < mv;
+            let is_low = self.current_mv() < mv;
             let is_same_side = |(_, span_mv): &&(Time, u32)| (*span_mv < mv) == is_low;
             let crossing = self.voltages.iter().rev().take_while(is_same_side).last();
             let age = crossing.map_or(0, |(time, _)| now - time);
@@ -111,7 +111,10 @@ impl Observer {
         let now = self.now;
         if now - self.started_at < FIRST_READING_TIME {
             let us = (now - self.started_at) / 16;
-            self.fail(Rule::SafeWrites, format!("a byte {us} us after a start"));
+            self.fail(
+                Rule::SafeWrites,
+                format!("a byte is written {us} us after a start"),
+            );
         }
         let slow_mv = self.limits.levels_mv[0].saturating_sub(self.limits.supply_error_mv);
         // Main takes no readings while it is stalled.
@@ -119,7 +122,10 @@ impl Observer {
             slow_mv,
             now - MAX_LOW_DETECTION_TIME - self.stalled_time_before(now),
         ) {
-            self.fail(Rule::SafeWrites, "a byte, the supply too low");
+            self.fail(
+                Rule::SafeWrites,
+                "a byte is written while the supply is too low",
+            );
         }
         if self
             .pending

@@ -24,7 +24,7 @@ fn pulse(servo: usize) -> Event<'static> {
     })
 }
 
-/// Lets the observer see a pulse of each servo, 4 ms apart from `start_ms` on.
+/// Passes to the observer a pulse of each servo, 4 ms apart from `start_ms` on.
 fn observe_pulses_of_all_servos(observer: &mut Observer, start_ms: Time) {
     for servo in 0..4 {
         observer.observe((start_ms + 4 * servo as Time) * MS, pulse(servo));
@@ -51,7 +51,7 @@ fn observer_of_awake_robot() -> Observer {
 }
 
 /// Returns an observer of a robot whose program hangs at 450 ms. The watchdog resets the processor at 600 ms, and
-/// `rest` comes at `rest_ms`.
+/// `rest` arrives at `rest_ms`.
 fn observer_of_hung_robot(rest_ms: Time) -> Observer {
     let mut observer = observer_of_awake_robot();
     let mut events = [
@@ -72,7 +72,7 @@ fn broken_rules(observer: &mut Observer) -> Vec<Rule> {
 }
 
 #[test]
-fn the_frame_after_a_hang_is_completed_although_a_rest_comes_in_it_or_was_lost_in_the_hang() {
+fn the_frame_after_a_hang_is_completed_even_if_rest_arrives_within_it_or_was_lost_in_the_hang() {
     for rest_ms in [500, 620] {
         let mut observer = observer_of_hung_robot(rest_ms);
         observe_pulses_of_all_servos(&mut observer, 625);
@@ -89,7 +89,7 @@ fn servos_that_rest_after_a_hang_wake_one_by_one() {
 }
 
 #[test]
-fn a_pulse_that_blocked_interrupts_have_cost_is_no_wake_up_but_any_other_gap_is() {
+fn a_gap_caused_by_blocked_interrupts_is_not_a_wake_up_but_any_other_gap_is() {
     for (are_interrupts_blocked, expected) in [(true, &[][..]), (false, &[Rule::WakeOneByOne])] {
         let mut observer = observer_of_awake_robot();
         if are_interrupts_blocked {
@@ -99,12 +99,15 @@ fn a_pulse_that_blocked_interrupts_have_cost_is_no_wake_up_but_any_other_gap_is(
         observer.observe(460 * MS, pulse(0));
         observer.observe(484 * MS, pulse(1));
         let broken = broken_rules(&mut observer);
-        assert_eq!(broken, expected, "held up: {are_interrupts_blocked}");
+        assert_eq!(
+            broken, expected,
+            "interrupts blocked: {are_interrupts_blocked}"
+        );
     }
 }
 
 #[test]
-fn servos_that_stay_silent_after_blocked_interrupts_wake_one_by_one() {
+fn servos_without_pulses_for_longer_than_interrupts_were_blocked_wake_one_by_one() {
     let mut observer = observer_of_awake_robot();
     observer.observe(455 * MS, Event::InterruptsBlocked(457 * MS));
     observe_pulses_of_all_servos(&mut observer, 540);
@@ -112,7 +115,7 @@ fn servos_that_stay_silent_after_blocked_interrupts_wake_one_by_one() {
 }
 
 #[test]
-fn a_report_of_a_rest_that_waited_in_the_queue_is_older_than_the_order_before_it() {
+fn a_rest_report_that_may_have_been_queued_before_a_command_does_not_forbid_its_pulses() {
     for (printed_from_ms, expected) in [(640, &[][..]), (700, &[Rule::PulsesPermitted])] {
         let mut observer = observer_of_awake_robot();
         observer.observe(450 * MS, Event::ProgramCut);

@@ -48,13 +48,13 @@ pub const EVEN_BOARD: Board = Board {
 };
 
 impl Board {
-    /// The board's tilt at a time, deg.
+    /// Returns the board's tilt at a time, deg.
     fn tilt_deg_at(&self, seconds: f64) -> f64 {
         (self.start_tilt_deg + self.lift_deg_per_s * (seconds - self.lift_start_s).max(0.0))
             .min(self.end_tilt_deg)
     }
 
-    /// The robot's distance downhill, mm, at every [`STEP_S`] up to a time in seconds.
+    /// Returns the robot's distance downhill, mm, at every [`STEP_S`] up to a time in seconds.
     fn slide_distances(&self, seconds: f64) -> Vec<f64> {
         let (mut distance_mm, mut speed_mm_s) = (0.0, 0.0);
         let advance = |step: usize| {
@@ -100,7 +100,7 @@ impl Board {
             // Downhill is to the left in the scene.
             let heading = PI + self.head_direction_deg.to_radians();
             let (sin, cos) = (PI + self.slide_direction_deg.to_radians()).sin_cos();
-            let robot = |time: f64| {
+            let pose_at = |time: f64| {
                 [
                     55.0 + distance_at(time) * cos,
                     5.0 + distance_at(time) * sin,
@@ -108,7 +108,7 @@ impl Board {
                 ]
             };
             let background = tilted_studio.background(&mut rng);
-            use_picture(seconds, &background.picture(seconds, robot, &mut rng));
+            use_picture(seconds, &background.picture(seconds, pose_at, &mut rng));
             seconds += if distance_at(seconds + 0.25) > 0.5 {
                 1.0 / pictures_per_s
             } else {

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut next_argument = || {
         arguments
             .next()
-            .ok_or("FOLDER WIDTH CYCLES [HIDDEN TAG]...")
+            .ok_or("usage: studio FOLDER WIDTH CYCLES [HIDDEN TAG]...")
     };
     let folder = PathBuf::from(next_argument()?);
     let (width, cycles): (usize, usize) = (next_argument()?.parse()?, next_argument()?.parse()?);

@@ -59,7 +59,7 @@ pub struct Studio {
     pub strips: [Pose; 2],
     /// Printed mm per designed mm, along a strip and across it.
     pub print_scale: [f64; 2],
-    /// Factor of the distance between a strip's tags; not 1 if the strip was cut apart.
+    /// Factor of the distance between a strip's tags; 1 unless the strip was cut apart.
     pub tag_distance_factor: f64,
     /// Height of the deck tag, mm.
     pub deck_tag_height: f64,
@@ -149,7 +149,7 @@ impl Studio {
         }
     }
 
-    /// The camera's position and its axes (right, down, ahead), in the frame of the tilted board.
+    /// Returns the camera's position and its axes (right, down, ahead), in the frame of the tilted board.
     fn camera(&self) -> (Vector, [Vector; 3]) {
         let (tilt, direction) = (
             self.camera_tilt.to_radians(),
@@ -329,9 +329,9 @@ impl View {
 }
 
 impl Background {
-    /// Returns the picture with the robot; the exposure is centred on this time. `robot` returns the robot's pose at
-    /// a time.
-    pub fn picture(&self, seconds: f64, robot: impl Fn(f64) -> Pose, rng: &mut Rng) -> Picture {
+    /// Returns the picture with the robot; the exposure is centred on this time. `pose_at` returns the robot's pose
+    /// at a time.
+    pub fn picture(&self, seconds: f64, pose_at: impl Fn(f64) -> Pose, rng: &mut Rng) -> Picture {
         let studio = &self.studio;
         let [width, height] = studio.size;
         let mut grey_levels = self.grey_levels.clone();
@@ -341,7 +341,7 @@ impl Background {
             std::array::from_fn(|i| {
                 let shutter_delay =
                     ((i as f64 + 0.5) / SHUTTER_SAMPLES as f64 - 0.5) * studio.exposure_s;
-                PoseFrame::new(robot(seconds + row_delay + shutter_delay))
+                PoseFrame::new(pose_at(seconds + row_delay + shutter_delay))
             })
         };
         let rows: Vec<_> = (0..height).map(poses_in_row).collect();
@@ -390,11 +390,11 @@ impl Background {
                     .map(|(grey, noise)| (grey * brightness + noise + 0.5) as u8),
             );
         }
-        Picture::new(width, height, grey).expect("all rows")
+        Picture::new(width, height, grey).expect("the picture has a grey for each pixel")
     }
 
-    /// Calls `visit` for every pixel around a part of the robot, with the pixel's index, and its column and row.
-    /// `half_size` is half the part's width and length, mm.
+    /// Calls `visit` for every pixel around the robot's body or card, with the pixel's index, and its column and row.
+    /// `half_size` is half the width and length of the body or card, mm.
     fn for_each_pixel(
         &self,
         PoseFrame([x, y], [cos, sin]): PoseFrame,

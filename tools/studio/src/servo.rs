@@ -21,21 +21,21 @@ pub const FRICTION_SHARE: f64 = 0.02;
 /// A servo in the jig.
 #[derive(Clone)]
 pub struct Servo {
-    /// Angle that the servo turns for each ordered deg.
+    /// Angle that the servo turns per commanded deg.
     pub gain: f64,
     /// Angular speed without load and friction, deg/s.
     pub no_load_rate: f64,
     /// Time constant of the rotor, s.
     pub spin_up: f64,
-    /// Width of the dead band, in ordered deg.
+    /// Width of the dead band, commanded deg.
     pub dead_band: f64,
     /// Total free play of the horn on its shaft, deg.
     pub play: f64,
     /// Torque of the load, clockwise, as a share of the stall torque.
     pub load: f64,
-    /// Speed at which the pulse changes in a large step, deg/s.
+    /// Rate at which the pulse changes in a large step, deg/s.
     pub slew_rate: f64,
-    /// Time of the first order, s.
+    /// Time of the first command, s.
     pub first_order_s: f64,
     /// Heading of the card at neutral, deg.
     pub neutral_heading: f64,
@@ -63,12 +63,12 @@ impl Servo {
         self.no_load_rate * (1.0 - FRICTION_SHARE)
     }
 
-    /// Returns the time at which all orders are complete, s.
+    /// Returns the time at which all commands are complete, s.
     pub fn end_s(&self) -> f64 {
         self.first_order_s + ORDER_INTERVAL * orders(1.0).len() as f64
     }
 
-    /// Simulates the card's angles. The orders are counter-clockwise from neutral if `side` is 1, and clockwise if it
+    /// Simulates the card's angles. The commands are counter-clockwise from neutral if `side` is 1, and clockwise if it
     /// is -1.
     pub fn simulate(&self, side: f64) -> CardAngles {
         let orders = orders(side);
@@ -141,8 +141,9 @@ impl Servo {
                 let max_step = self.slew_rate * FRAME_S;
                 pulse + (ordered - pulse).clamp(-max_step, max_step)
             } else {
-                let begin = ORDER_INTERVAL * order as f64;
-                let share = ((seconds - begin) / (MOVE_FRAMES as f64 * FRAME_S)).clamp(0.0, 1.0);
+                let order_start = ORDER_INTERVAL * order as f64;
+                let share =
+                    ((seconds - order_start) / (MOVE_FRAMES as f64 * FRAME_S)).clamp(0.0, 1.0);
                 start_pulse + (ordered - start_pulse) * share * share * (3.0 - 2.0 * share)
             };
             pulse

@@ -13,13 +13,18 @@ pub const REST_S: f64 = 0.5;
 
 /// Returns a gait of the paper's robot with the path that the twin walks in the second cycle.
 pub fn paper_gait(name: &str) -> Gait {
-    let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("a robot");
-    let gait = robot.gait(name).expect("a gait");
+    let robot =
+        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
+    let gait = robot.gait(name).expect("the robot has this gait");
     let mut twin = Twin::new(&robot, ServoModel::of(&robot));
     let frame_count = gait.frames().count() - 1;
     let mut places = Vec::new();
     for i in 0..=2 * frame_count {
-        let phase = gait.frames().nth(i % frame_count).expect("a frame").1;
+        let phase = gait
+            .frames()
+            .nth(i % frame_count)
+            .expect("every cycle has this frame")
+            .1;
         let place = twin.push_angles(gait.table_angles(phase)).place;
         if i >= frame_count {
             places.push(place);
@@ -39,7 +44,7 @@ pub fn paper_gait(name: &str) -> Gait {
     }
 }
 
-/// Number of parts of a cycle; each part deviates independently, as if a foot slipped sometimes.
+/// Number of parts of a cycle; each part deviates independently, as if a foot slipped now and then.
 const PARTS_PER_CYCLE: usize = 12;
 
 /// A walk of some cycles.
@@ -52,7 +57,7 @@ pub struct Walk {
     deviations: Vec<[[f64; 3]; PARTS_PER_CYCLE + 1]>,
 }
 
-/// Standard deviations of a walk and of its measures.
+/// Standard deviations of a walk and of its measurements.
 #[derive(Clone, Copy, Default)]
 pub struct Variation {
     /// Deviation of each cycle from the gait: mm, mm, rad.
@@ -188,12 +193,12 @@ impl WalkSeries {
 
     /// Returns the robot's pose at a time.
     pub fn pose_at(&self, seconds: f64) -> Pose {
-        let has_begun = |(start_s, _): &&(f64, Walk)| start_s + REST_S <= seconds;
+        let has_started = |(start_s, _): &&(f64, Walk)| start_s + REST_S <= seconds;
         let (start_s, walk) = self
             .walks
             .iter()
             .rev()
-            .find(has_begun)
+            .find(has_started)
             .unwrap_or(&self.walks[0]);
         walk.pose_at(seconds - start_s)
     }

@@ -1,8 +1,8 @@
 //! Waits with a time limit. A test that waits for another program, a port or a thread would hang forever if there were
-//! no answer, and the run of all tests would hang, too. Here every wait has a limit; after it the test fails with a
-//! message that names the missing event.
+//! no answer, and the run of all tests would hang, too. Here every wait has a limit, after which the test fails with
+//! a message that names the missing event.
 //!
-//! The limit does not measure speed: a machine may be busy, and only a test that hangs should fail. All waits use the
+//! The limit is not a measure of speed: a machine may be busy, and only a test that hangs should fail. All waits use the
 //! same limit, [`LIMIT`]. Do not use it outside of tests, and do not use it to assert that something is fast.
 //!
 //! ```
@@ -37,7 +37,7 @@ impl fmt::Display for TimeLimit {
 }
 
 impl TimeLimit {
-    /// Makes another limit, for tests of this crate.
+    /// Creates another limit, for the tests of this crate.
     pub const fn new(time: Duration) -> Self {
         Self(time)
     }
@@ -66,21 +66,21 @@ impl TimeLimit {
         assert!(self.wait_for(condition), "waited {self} for {event}");
     }
 
-    /// Runs `work`, which may block, as a read or a join does, and returns its result. `work` runs on a separate
+    /// Runs `task`, which may block, as a read or a join does, and returns its result. `task` runs on a separate
     /// thread, which continues after the call if the limit is reached first.
     ///
     /// # Panics
-    /// If `work` does not return within the limit, with the message of [`TimeLimit::expect`]; or if `work` panics.
+    /// If `task` does not return within the limit, with the message of [`TimeLimit::expect`]; or if `task` panics.
     #[track_caller]
     pub fn within<T: Send + 'static>(
         self,
         event: &str,
-        work: impl FnOnce() -> T + Send + 'static,
+        task: impl FnOnce() -> T + Send + 'static,
     ) -> T {
         let (sender, receiver) = mpsc::channel();
         let worker = thread::spawn(move || {
             // There is no receiver if the limit was reached first.
-            let _ = sender.send(work());
+            let _ = sender.send(task());
         });
         match receiver.recv_timeout(self.0) {
             Ok(result) => result,

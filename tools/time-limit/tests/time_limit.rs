@@ -13,10 +13,12 @@ const SHORT_LIMIT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
 
 /// Returns the message with which `wait` panics.
 fn panic_message<T>(wait: impl FnOnce() -> T) -> String {
-    let panic = catch_unwind(AssertUnwindSafe(wait)).err().expect("a panic");
+    let panic = catch_unwind(AssertUnwindSafe(wait))
+        .err()
+        .expect("the wait panics");
     match panic.downcast::<String>() {
         Ok(message) => *message,
-        Err(panic) => (*panic.downcast::<&str>().expect("a message")).to_owned(),
+        Err(panic) => (*panic.downcast::<&str>().expect("the panic has a message")).to_owned(),
     }
 }
 
@@ -46,14 +48,14 @@ fn a_condition_is_checked_until_it_holds() {
 }
 
 #[test]
-fn work_that_blocks_fails_and_names_the_event() {
+fn a_task_that_blocks_fails_and_names_the_event() {
     let (_sender, receiver) = mpsc::channel::<()>();
     let message = panic_message(|| SHORT_LIMIT.within("a message", move || receiver.recv()));
     assert_eq!(message, "waited 100ms for a message");
 }
 
 #[test]
-fn work_that_ends_returns_its_result_or_fails_with_its_own_message() {
+fn a_task_that_ends_returns_its_result_or_fails_with_its_own_message() {
     assert_eq!(LIMIT.within("a sum", || 2 + 2), 4);
     let message = panic_message(|| LIMIT.within("a sum", || panic!("no sum")));
     assert_eq!(message, "no sum");
@@ -74,7 +76,10 @@ fn a_program_that_does_not_end_is_killed() {
         error.to_string(),
         format!("waited 100ms for the end of process {id}")
     );
-    let status = child.try_wait().expect("a child").expect("an exit status");
+    let status = child
+        .try_wait()
+        .expect("the child exists")
+        .expect("the child has ended");
     assert_eq!(status.code(), None, "killed by a signal");
 }
 
@@ -97,7 +102,7 @@ fn a_program_gets_its_input_and_both_its_outputs_are_read() {
 }
 
 #[test]
-fn the_error_of_a_program_that_prints_forever_has_its_name() {
+fn the_error_of_a_program_that_prints_forever_names_the_program() {
     let error = SHORT_LIMIT.output(&mut Command::new("yes"), b"");
     let error = error.expect_err("the program never ends");
     assert_eq!(error.kind(), ErrorKind::TimedOut);
@@ -105,7 +110,7 @@ fn the_error_of_a_program_that_prints_forever_has_its_name() {
 }
 
 #[test]
-fn processes_that_a_program_leaves_running_are_not_waited_for() {
+fn processes_that_a_program_leaves_running_are_waited_for_only_within_the_limit() {
     let error = SHORT_LIMIT.output(&mut shell("sleep 2 &"), b"");
     let message = error.expect_err("the process may still print").to_string();
     assert_eq!(
@@ -115,7 +120,7 @@ fn processes_that_a_program_leaves_running_are_not_waited_for() {
 }
 
 #[test]
-fn a_program_that_is_missing_is_an_error_of_the_system() {
+fn a_missing_program_is_an_error_of_the_system() {
     let error = LIMIT.output(&mut Command::new("no-such-program"), b"");
     assert_eq!(
         error.expect_err("the program is missing").kind(),

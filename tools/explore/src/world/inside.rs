@@ -1,4 +1,4 @@
-//! Checks of rules about the robot's internal state or its future. The future is computed on a clone.
+//! Checks of rules about the robot's internal state or its future. A clone of the robot computes the future.
 
 use lizard_core::console::command::effect;
 use lizard_core::console::word::Effect;
@@ -23,7 +23,7 @@ const MOTION_FRAMES: u32 = 160;
 /// Lines that start a gait or a routine with a count; even at half pace, the motion ends within [`MOTION_FRAMES`].
 const COUNTED_MOTIONS: [&str; 3] = ["walk 1", "trot 2", "round 1"];
 
-/// Number of frames after which a contact is debounced in any case.
+/// Number of frames after which a contact is certainly debounced.
 const DEBOUNCE_FRAMES: u8 = 5;
 
 /// Time after which the robot has measured a new supply voltage often enough to react.
@@ -51,7 +51,7 @@ impl World {
         let effect = effect(line, &self.robot());
         let is_accepted = answer.starts_with("ok ");
         // While its last frame still waits for the pulses, main has not noticed a late edge yet. The edge then stops
-        // the robot after the order.
+        // the robot after the command.
         let has_unnoticed_edge =
             self.observer.is_stop_unreported() && self.running_robot.board.late_edges > 0;
         self.observe_order(effect, Some(is_accepted));
@@ -95,7 +95,7 @@ impl World {
         self.observer.verdict()
     }
 
-    /// Passes an order that moves, freezes or rests the robot to the observer.
+    /// Passes a command that moves, freezes or rests the robot to the observer.
     pub(super) fn observe_order(&mut self, effect: Effect, is_accepted: Option<bool>) {
         if matches!(effect, Effect::Moves | Effect::Freezes | Effect::Rests) {
             self.observe(Event::Order {
@@ -130,7 +130,9 @@ impl World {
                 continue;
             };
             let (_, limits) = rest.split_once(" limit ").expect("cal prints the limits");
-            let (limits, _) = limits.split_once(" dir ").expect("the limits end there");
+            let (limits, _) = limits
+                .split_once(" dir ")
+                .expect("the direction follows the limits");
             let answer = future_robot.send_line(&format!("limit {servo} {limits}"));
             if answer.starts_with("err ") {
                 return broken_rule(Rule::LoadedLimitsValid, answer);
@@ -179,7 +181,7 @@ impl World {
         let motion = future_robot.motion();
         let standing_pulses = Pose::NEUTRAL.pulses(motion.calibration());
         let activity = motion.activity();
-        // While the unsafe gait `stray` braked, the pose may have left the safe poses.
+        // The pose may have left the safe poses while the unsafe gait `stray` came to a stop.
         if motion.hazard().is_some() {
             return Ok(());
         }

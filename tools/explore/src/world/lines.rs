@@ -35,7 +35,7 @@ impl World {
             }
         }
         if self.running_robot.board.unread_count() == 0 {
-            self.judge_coming_answer(line, &robot_before)?;
+            self.judge_next_answer(line, &robot_before)?;
         }
         if self.unanswered_line.is_some() {
             let effect = effect(line, &self.robot());
@@ -44,7 +44,7 @@ impl World {
         self.observe_output(self.now)
     }
 
-    /// Sends a line at another rate than the receiver's, and checks that the robot ignores the line.
+    /// Sends a line at another baud rate than the receiver's, and checks that the robot ignores the line.
     pub(super) fn send_line_at_other_rate(&mut self) -> Verdict {
         let robot_before = self.settled_clone();
         self.running_robot.board.send(&UNREADABLE);
@@ -56,24 +56,24 @@ impl World {
         Ok(())
     }
 
-    /// Checks that a robot that is asked repeatedly finds the sender's rate and answers.
+    /// Checks that a robot that is queried repeatedly finds the sender's baud rate and answers.
     pub(super) fn check_rate_is_found(&self) -> Verdict {
-        let mut asked_robot = self.running_robot.clone();
-        asked_robot.board.transmitter.is_held = false;
+        let mut queried_robot = self.running_robot.clone();
+        queried_robot.board.transmitter.is_held = false;
         for _ in 0..MAX_LINES_TO_FIND_RATE {
-            if asked_robot.is_stopped_by_watchdog() {
+            if queried_robot.is_stopped_by_watchdog() {
                 return Ok(());
             }
-            let line: &[u8] = if asked_robot.board.rate == self.sender_rate {
+            let line: &[u8] = if queried_robot.board.rate == self.sender_rate {
                 b"status\n"
             } else {
                 &UNREADABLE
             };
-            asked_robot.board.send(line);
+            queried_robot.board.send(line);
             for _ in 0..4 {
-                asked_robot.run_frame();
+                queried_robot.run_frame();
             }
-            if asked_robot.board.transmitter.text.contains("ok gait=") {
+            if queried_robot.board.transmitter.text.contains("ok gait=") {
                 return Ok(());
             }
         }
@@ -91,9 +91,8 @@ impl World {
         clone
     }
 
-    /// Judges an answer that the robot has decided on, but not printed: the robot's state must already agree with the
-    /// answer.
-    fn judge_coming_answer(&mut self, line: &'static str, robot_before: &RunningRobot) -> Verdict {
+    /// Judges the answer that the robot is about to print: the robot's state must already agree with it.
+    fn judge_next_answer(&mut self, line: &'static str, robot_before: &RunningRobot) -> Verdict {
         let robot_after = self.settled_clone();
         let text = &robot_after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_answer(line)) else {
@@ -127,8 +126,8 @@ impl World {
             if is_answer(line) {
                 if self.judged_answer_count > 0 && !line.starts_with("ok gait=") {
                     self.judged_answer_count -= 1;
-                } else if let Some(asked_line) = self.unanswered_line.take() {
-                    self.judge_answer(asked_line, line)?;
+                } else if let Some(sent_line) = self.unanswered_line.take() {
+                    self.judge_answer(sent_line, line)?;
                 }
             }
         }

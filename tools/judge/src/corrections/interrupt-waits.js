@@ -17,7 +17,7 @@ const mayEnableInterrupts = (opcode) =>
 export function delayInterruptAfterEnable(uno) {
   const { cpu } = uno;
   const { data } = cpu;
-  /** The cycle at which the last instruction that switched interrupts on has ended. */
+  /** The end of the last instruction that switched interrupts on, cycles. */
   let enabledCycle = -1;
   const execute = () => {
     const wasEnabled = data[SREG] & SREG_I;
