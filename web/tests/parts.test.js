@@ -189,11 +189,11 @@ test('opening the page loads no parts, and less than 500 KB compressed', async (
   const totalBytes = sizes.reduce((a, b) => a + b, 0);
   assert.ok(names.includes('files/lizard.wasm'), names.join(' '));
   assert.ok(totalBytes < MAX_FIRST_LOAD_BYTES, `${totalBytes} bytes`);
-  const earlyNames = names.filter((name) => /parts\.wasm|tune\.wasm|space|workshop|worker-.*parts/.test(name));
+  const earlyNames = names.filter((name) => /parts\.wasm|tune\.wasm|robot-view|workshop|worker-.*parts/.test(name));
   assert.deepEqual(earlyNames, []);
   await unfold(page, '#parts');
   await page.getByText('Click a part for its name').waitFor();
-  assert.ok(bodies.has('files/parts.wasm') && [...bodies.keys()].some((name) => name.includes('space')));
+  assert.ok(bodies.has('files/parts.wasm') && [...bodies.keys()].some((name) => name.includes('robot-view')));
 });
 
 test('the archive has the files of lizard parts, byte for byte', async () => {

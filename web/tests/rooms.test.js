@@ -141,10 +141,10 @@ test('one press changes between 3D and the drawing from above, and three.js is l
   const page = await openStanding();
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
   for (const room of ROOMS.slice(1)) await linkTo(page, room).click();
-  assert.deepEqual(loadedPaths.filter((path) => /space|parts/.test(path)), []);
+  assert.deepEqual(loadedPaths.filter((path) => /robot-view|parts/.test(path)), []);
   await page.locator('#solid').click();
   await page.waitForFunction(() => document.querySelector('#part').length > 10);
-  assert.ok(loadedPaths.some((path) => /space/.test(path)));
+  assert.ok(loadedPaths.some((path) => /robot-view/.test(path)));
   assert.ok(await page.locator('#space').isVisible());
   await page.locator('#solid').click();
   assert.ok(!(await page.locator('#space').isVisible()));
