@@ -1,4 +1,4 @@
-//! `lizard info ports`: the serial ports of this machine, and the boards that may be at them.
+//! `lizard info ports`: the serial ports of this machine, and the boards that may be connected to them.
 
 use std::fmt::Write as _;
 

@@ -14,7 +14,7 @@ const RULER_RANGE: [f64; 2] = [85.0, 115.0];
 /// The options that describe how films were taken.
 #[derive(clap::Args, Debug)]
 pub(super) struct Filming {
-    /// Pictures in a second [default: by the film, or by the names of pictures, as 1.033s.png]
+    /// Pictures per second [default: from the film, or from the names of pictures, such as 1.033s.png]
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     fps: Option<f64>,
     /// Length of the line on a strip that should be 100 mm long

@@ -42,7 +42,7 @@ pub(super) fn list_pictures(
             Some(seconds) => Ok((seconds, path)),
             None => Err(Failure::Input(format!(
                 "the times of the pictures are unknown: --fps 30 gives the film's frames per second, or name \
-                 the files by their times, as 1.033s.png or 1033ms.png; {} tells none",
+                 the files by their times, such as 1.033s.png or 1033ms.png; {} tells none",
                 path.display()
             ))),
         },

@@ -26,7 +26,7 @@ use crate::drive::clock::Clock;
 /// once: `stop` goes ahead of whatever waits, and is sent until it is answered. The arrow keys bring back older
 /// lines; Ctrl-C, Ctrl-D or `quit` end the program. The line at the bottom shows gait, pose, smallest margin, supply
 /// and faults. For that line, the program asks the robot for its `status` twice a second, so `boot` does not act. While
-/// you drive, `deadman` is set: a robot out of reach stops by itself. If standard input is a file or a pipe, its lines
+/// you drive, `deadman` is set: a robot out of range stops by itself. If standard input is a file or a pipe, its lines
 /// are sent one after another, and the exit code is 1 if the robot refuses one; by radio, the robot stops when they
 /// have ended.
 #[derive(clap::Args, Debug)]

@@ -323,7 +323,7 @@ mod tests {
                 }
                 return Err(ErrorKind::TimedOut.into());
             }
-            // Small pieces, as from a serial port.
+            // Small pieces, like those of a serial port.
             let count = buffer.len().min(3);
             self.ready_bytes.read(&mut buffer[..count])
         }

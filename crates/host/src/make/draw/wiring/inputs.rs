@@ -14,9 +14,9 @@ use crate::shared::ink::{
 
 /// Height of the panel, pixels.
 const PANEL_HEIGHT: f64 = 214.0;
-/// x of the board's pins, pixels.
+/// Horizontal position of the board's pins, pixels.
 const BOARD_PINS_X: f64 = 120.0;
-/// x of the pins of the button and of the obstacle switch, pixels.
+/// Horizontal position of the pins of the button and of the obstacle switch, pixels.
 const COMPONENT_PINS_X: f64 = 400.0;
 /// Distance between neighbouring rows, pixels.
 const ROW_HEIGHT: f64 = 26.0;

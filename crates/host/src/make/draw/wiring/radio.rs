@@ -14,17 +14,17 @@ use crate::shared::ink::{
 
 /// Height of the panel, pixels.
 pub const PANEL_HEIGHT: f64 = 246.0;
-/// Horizontal position of the board's pins.
+/// Horizontal position of the board's pins, pixels.
 const BOARD_PINS_X: f64 = 120.0;
-/// Horizontal position of the module's pins.
+/// Horizontal position of the module's pins, pixels.
 const MODULE_PINS_X: f64 = 500.0;
-/// Horizontal position of the diode.
+/// Horizontal position of the diode, pixels.
 const DIODE_X: f64 = 300.0;
-/// Horizontal position of the divider's upper resistor.
+/// Horizontal position of the divider's upper resistor, pixels.
 const UPPER_RESISTOR_X: f64 = 260.0;
-/// Horizontal position of the divider's tap and lower resistor.
+/// Horizontal position of the divider's tap and lower resistor, pixels.
 const DIVIDER_X: f64 = 390.0;
-/// Rows: the board's pin, the module's pin, and the distance below the panel's top, pixels.
+/// The rows of the panel: the board's pin, the module's pin, and the distance below the panel's top, pixels.
 const ROWS: [(&str, &str, f64); 4] = [
     ("D0 (RX)", "TXD", 64.0),
     ("D1 (TX)", "RXD", 102.0),
