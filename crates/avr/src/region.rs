@@ -14,7 +14,7 @@ const IS_PLAIN_LINK: bool = match option_env!("LIZARD_PLAIN_LINK") {
     None => false,
 };
 
-/// The region's first address. Before it there is room for 27.5 KiB of code, or for 29.9 KiB with [`IS_PLAIN_LINK`].
+/// The region's first address. Before it there is room for 27.5 KiB of code, or for 29.9 KiB if avr-gcc alone links.
 pub const START_ADDRESS: u16 = if IS_PLAIN_LINK { 0x7780 } else { 0x6e00 };
 
 /// The address after the region: where the boot loader of an Arduino UNO begins, or the flash ends.

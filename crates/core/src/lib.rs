@@ -1,7 +1,7 @@
 //! The core of a robotic lizard's firmware, for any such robot and any board.
 //!
-//! Four hobby servos drive two five-bar linkages and four legs, whose feet drag on the floor. A line of text asks
-//! for a gait or a pose; fifty times a second the core turns the request into four pulse widths that the servos
+//! Four hobby servos drive two five-bar linkages and four legs, whose feet drag on the floor. A line of text requests
+//! a gait or a pose; fifty times a second the core turns the request into four pulse widths that the servos
 //! can follow and that cannot break a linkage of the robot.
 //!
 //! Commands pass from the console to the pulses through the types of the first row, and answers return through those
@@ -22,7 +22,7 @@
 //! | [`console`] | bytes, lines, commands, messages |
 //! | [`control`] | orders, refusals, the [`control::supervisor`]'s table, faults, supplies |
 //! | [`motion`] | gaits, moves between poses, and the changes from one to the next |
-//! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose exceeds |
+//! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose violates |
 //! | [`memory`] | settings and poses that survive power-off, and a state that survives a reset |
 //! | [`numbers`] | units, and the section of flash with the numbers of a robot |
 //!
@@ -52,11 +52,11 @@
 //! assert_eq!(servo.width(sweep), PulseWidth(1800 * CYCLES_PER_US), "300 us longer");
 //! ```
 //!
-//! The goals, in this order, if two of them conflict:
+//! The goals, in order of priority:
 //!
 //! 1. **Safe.** No frame is sent without the guard, no two servos wake together, and after
 //!    a fault the robot stands still and reports the reason.
-//! 2. **Exact.** A pulse is right to the cycle, and a frame on the host equals the chip's
+//! 2. **Exact.** A pulse is correct to the cycle, and a frame on the host equals the chip's
 //!    to the bit.
 //! 3. **Plain.** Each concept is a type, each choice is an enum, and each refusal has a message.
 //! 4. **Small.** Flash and RAM come last: a type that costs a few bytes is kept as long as
@@ -67,7 +67,7 @@
 //! from its section of flash ([`numbers::section`], [`numbers::robot::Robot`]), the board
 //! through the trait [`step::Board`]; this crate can name neither a register nor a file.
 //!
-//! Do not use it for a robot of another build: head, tail and sides have to be five-bars on
+//! Do not use this crate for a robot of another build: head, tail and sides have to be five-bars on
 //! exactly four servos. To send pulses alone, use `servo-pulses`; to explore a linkage on
 //! a host, use the floating-point crate `lizard-kinematics`.
 

@@ -103,7 +103,7 @@ impl Deref for Sample {
 }
 
 impl Sample {
-    /// The robot of these measurements, in integers.
+    /// Creates the robot of these measurements, in integers.
     pub fn new(measurements: Measurements) -> Self {
         let Measurements {
             lizard,
@@ -166,7 +166,7 @@ impl Sample {
         }
     }
 
-    /// Applies `change` to the content of the section and makes the robot anew.
+    /// Applies `change` to the content of the section, and rebuilds the robot.
     pub fn with_changes(mut self, change: impl FnOnce(&mut Content)) -> Self {
         change(&mut self.content);
         self.robot = robot_from(&self.content);
@@ -183,8 +183,8 @@ impl Sample {
         Self::new(Measurements::odd())
     }
 
-    /// Random robots of [`Measurements::random`] whose neutral pose the integer guard accepts, as it must for every
-    /// robot of a firmware. Because of rounding, some poses are safe in floating point but not in integers.
+    /// Yields random robots of [`Measurements::random`] whose neutral pose the integer guard accepts, as it must for
+    /// every robot of a firmware. Because of rounding, some poses are safe in floating point but not in integers.
     pub fn random() -> impl Strategy<Value = Self> {
         Measurements::random()
             .prop_map(Self::new)
@@ -198,7 +198,7 @@ impl Sample {
             .is_none()
     }
 
-    /// This robot with the given hash, in a section with a correct checksum.
+    /// Returns this robot with the given hash, in a section with a correct checksum.
     pub fn with_hash(&self, hash: u32) -> Robot<'static> {
         let mut section = self.content.section_bytes();
         let offset = offset_of!(Header, hash);
@@ -222,7 +222,7 @@ impl Sample {
         })
     }
 
-    /// Adds a routine that carries out `steps` this many times; without end if `rounds` is 0. Each step is a kind, the
+    /// Adds a routine that carries out `steps` this many times, or endlessly if `rounds` is 0. Each step is a kind, the
     /// name of a gait or an input, and a count.
     pub fn with_routine(self, name: &str, rounds: u16, steps: &[(u8, &str, u16)]) -> Self {
         let steps: Vec<Step> = steps
@@ -249,18 +249,18 @@ impl Sample {
         })
     }
 
-    /// The chassis angles of a pose, deg.
+    /// Returns the chassis angles of a pose, deg.
     pub fn degrees(&self, pose: &Pose) -> [f64; 4] {
         pose.angles(&self.neutral_angles()).map(degrees)
     }
 
-    /// The exact solution of a pose; `None` if a linkage cannot be assembled in it.
+    /// Solves a pose exactly; returns `None` if a linkage cannot be assembled in it.
     pub fn solve(&self, pose: &Pose) -> Option<kinematics::Solution> {
         let angles = self.degrees(pose);
         self.measurements.lizard.solve(&angles.into()).ok()
     }
 
-    /// Random poses within the travel of every servo.
+    /// Yields random poses within the travel of every servo.
     pub fn any_pose(&self) -> impl Strategy<Value = Pose> + use<> {
         self.calibration()
             .map(|servo| (servo.travel_min.0..=servo.travel_max.0).prop_map(Sweep))
@@ -283,17 +283,17 @@ fn robot_from(content: &Content) -> Robot<'static> {
         .expect("the section is complete")
 }
 
-/// An angle of the core in degrees, 0..360.
+/// Converts an angle of the core to degrees, 0..360.
 pub fn degrees(angle: Angle) -> f64 {
     f64::from(angle.0) / STEPS_PER_DEGREE
 }
 
-/// A sine of the core as a floating-point number.
+/// Converts a sine of the core to a floating-point number.
 pub fn sine(sine: Sine) -> f64 {
     f64::from(sine.0) / 32768.0
 }
 
-/// A side's slider in the finest steps that its lengths allow, with its stroke, mm, rounded inwards.
+/// Converts a side's slider to the finest steps that its lengths allow. The stroke, given in mm, is rounded inwards.
 pub fn slider_in_steps(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
     let total = side.base + side.front_arm + side.rear_arm + side.front_offset.abs();
     let arms = side.front_arm + side.rear_arm + side.front_offset.abs();
@@ -336,8 +336,8 @@ pub const BUTTON: Input = Input::button(15);
 /// The obstacle switch that routines wait for.
 pub const NOSE: Input = Input::nose(16);
 
-/// Makes three waves: a sine, a slow rise with a quick fall, and a hump. Each channel of a gait scales its wave by a
-/// gain.
+/// Makes three waveforms: a sine, a slow rise with a quick fall, and a hump. Each channel of a gait scales its waveform
+/// by a gain.
 fn make_waves() -> Vec<Wave> {
     let wave_of = |function: fn(f64) -> f64| -> Wave {
         core::array::from_fn(|n| {

@@ -31,7 +31,7 @@ pub trait Board {
     /// The memory that keeps its bytes without power, an EEPROM.
     type Memory: Memory;
 
-    /// Bytes that an idle writer takes without waiting; at least [`MAX_OUTPUT_LINE_BYTES`], since a
+    /// Number of bytes that an idle writer accepts without waiting; at least [`MAX_OUTPUT_LINE_BYTES`], since a
     /// line is written only when there is room for all of it.
     const WRITER_CAPACITY: u8;
 
@@ -79,13 +79,13 @@ pub trait Board {
     /// Switches the LED on or off.
     fn set_led(&mut self, is_on: bool);
 
-    /// Bytes that the writer takes now without waiting.
+    /// Number of bytes that the writer accepts now without waiting.
     fn room(&self) -> u8;
 
     /// The serial line's writer.
     fn writer(&mut self) -> &mut Self::Writer;
 
-    /// The next received byte, if any; [`crate::console::line::GARBLED_BYTE`] if the byte arrived garbled.
+    /// Returns the next received byte, if any; [`crate::console::line::GARBLED_BYTE`] if the byte arrived garbled.
     fn receive(&mut self) -> Option<u8>;
 
     /// Changes the rate of the serial line, and stores the rate in memory that survives a reset.
@@ -95,7 +95,7 @@ pub trait Board {
     fn counters(&self) -> Counters;
 }
 
-/// The main loop: the robot's control, and its console on the serial line.
+/// The main loop: the robot's controller, and its console on the serial line.
 #[derive(Clone, Debug)]
 pub struct Main {
     control: Controller,
@@ -120,7 +120,7 @@ impl Default for Main {
 }
 
 impl Main {
-    /// Makes a main loop without a robot; [`Main::begin`] must follow.
+    /// Creates a main loop without a robot; [`Main::begin`] must follow.
     ///
     /// All its bits are zero, so that a firmware's `Main` needs no initial values in flash; the linker script rejects
     /// initial values.
@@ -132,7 +132,8 @@ impl Main {
         }
     }
 
-    /// Starts on a board, with the robot at the beginning of `flash`. Must be called once, before the first step.
+    /// Starts the main loop on a board, with the robot at the beginning of `flash`. Call it once, before the first
+    /// step.
     #[inline(always)]
     pub fn begin<B: Board>(&mut self, flash: Region<'static>, board: &mut B) {
         const {
@@ -149,7 +150,7 @@ impl Main {
         self.last_tick = board.ticks();
     }
 
-    /// The robot's control.
+    /// The robot's controller.
     pub const fn control(&self) -> &Controller {
         &self.control
     }

@@ -45,8 +45,8 @@ pub const FRAME_MS: u8 = units::FRAME_MS as u8;
 /// start of the next.
 const SLOT_MS: u8 = 4;
 
-/// Milliseconds without feeding after which the watchdog interrupts the program. After twice this time, it resets
-/// the processor.
+/// Milliseconds without feeding after which the watchdog interrupts the program. After twice this time, the watchdog
+/// resets the processor.
 pub const WATCHDOG_MS: u16 = 125;
 
 /// Capacity of the receive buffer, bytes.
@@ -55,7 +55,7 @@ const RECEIVE_CAPACITY: usize = 64;
 /// Pulse widths that fit a slot, 1/16 us; any other width gives no pulse.
 const VALID_WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 
-/// The state of a virtual board: what a UNO keeps in its registers, memories and pins.
+/// The state of a virtual board: that of a UNO's registers, memories and pins.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct VirtualBoard {
     /// Milliseconds since the last tick.
@@ -72,7 +72,7 @@ pub struct VirtualBoard {
     is_lit: bool,
     received_bytes: VecDeque<u8>,
     lost_bytes: u16,
-    /// Pulse edges that came late.
+    /// Number of late pulse edges.
     pub late_edges: u16,
     /// True unless the stack has grown into the data.
     pub is_stack_intact: bool,
@@ -90,7 +90,7 @@ pub struct VirtualBoard {
     pub ram: Ram,
     /// True if a boot loader hides the cause of a reset from the program.
     pub has_boot_loader: bool,
-    /// The last restart, as the main loop is told of it.
+    /// The last restart, as reported to the main loop.
     last_restart: Restart,
     /// The rate of the serial line.
     pub rate: BaudRate,
@@ -109,7 +109,7 @@ impl Default for VirtualBoard {
 }
 
 impl VirtualBoard {
-    /// A board at power-on with this memory. Its supplies are not measured: every reading is 0.
+    /// Creates a board at power-on with this memory. Its supplies are not measured: every reading is 0.
     pub fn new(memory: Eeprom) -> Self {
         Self {
             ms_since_tick: FRAME_MS - 1,

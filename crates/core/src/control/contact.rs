@@ -25,7 +25,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// No contact. It ends no step as long as its level is reported as open.
+    /// No contact; ends no step as long as its level is reported as open.
     pub const NONE: Self = Self {
         input: Input::NONE,
         history: 0,
@@ -62,23 +62,23 @@ mod tests {
 
     use super::*;
 
-    /// The frames in which a contact would end its step; in `levels`, `#` stands for a frame with a closed contact.
-    fn closing_frames_of(mut contact: Contact, levels: &str) -> Vec<usize> {
+    /// Returns the frames in which a contact would end its step; in `levels`, `#` is a frame with a closed contact.
+    fn ending_frames(mut contact: Contact, levels: &str) -> Vec<usize> {
         let level_frames = levels.bytes().enumerate();
         let closed_frames = level_frames.filter(|(_, level)| contact.add_level(*level == b'#'));
         closed_frames.map(|(frame, _)| frame).collect()
     }
 
     #[test]
-    fn a_contact_counts_as_closed_in_its_third_closed_frame_in_a_row() {
+    fn a_contact_counts_as_closed_in_its_third_consecutive_closed_frame() {
         let input = Input::button(15);
         for contact in [
             Contact::waiting_to_close(input),
             Contact::waiting_while_open(input),
         ] {
-            assert_eq!(closing_frames_of(contact, "....###"), [6]);
-            assert_eq!(closing_frames_of(contact, "....##.##.#.#.##.###."), [19]);
-            assert!(closing_frames_of(contact, "...##..##..#..##.##.#").is_empty());
+            assert_eq!(ending_frames(contact, "....###"), [6]);
+            assert_eq!(ending_frames(contact, "....##.##.#.#.##.###."), [19]);
+            assert!(ending_frames(contact, "...##..##..#..##.##.#").is_empty());
         }
     }
 
@@ -86,16 +86,16 @@ mod tests {
     fn a_contact_closed_from_the_start_ends_a_walk_but_ends_a_wait_only_after_it_has_opened() {
         let input = Input::nose(16);
         assert_eq!(
-            closing_frames_of(Contact::waiting_while_open(input), "###"),
+            ending_frames(Contact::waiting_while_open(input), "###"),
             [2]
         );
         let stuck_levels: String = "#".repeat(1000);
-        assert!(closing_frames_of(Contact::waiting_to_close(input), &stuck_levels).is_empty());
+        assert!(ending_frames(Contact::waiting_to_close(input), &stuck_levels).is_empty());
         assert_eq!(
-            closing_frames_of(Contact::waiting_to_close(input), "####...###"),
+            ending_frames(Contact::waiting_to_close(input), "####...###"),
             [9]
         );
         // Two open frames are too few to count as open.
-        assert!(closing_frames_of(Contact::waiting_to_close(input), "####..####.##").is_empty());
+        assert!(ending_frames(Contact::waiting_to_close(input), "####..####.##").is_empty());
     }
 }

@@ -59,12 +59,12 @@ pub struct Controller {
     is_supply_suspected: bool,
     /// Consecutive resets, including the last one, that a weak supply may have caused.
     brown_outs: u8,
-    /// True if a command has come since the program started.
+    /// True if a command has been received since the program started.
     has_heard_command: bool,
     routine: Routine,
     /// The contact that may end the current step of a routine.
     contact: Contact,
-    /// True if `boot` started the current activity, and no command has come since.
+    /// True if `boot` started the current activity, and no command has been received since.
     is_unattended: bool,
     /// The EEPROM operation that an order has started.
     job: Option<Job>,
@@ -104,7 +104,7 @@ impl Controller {
     }
 
     /// Loads the robot's section from `flash`, then restores the settings and the rest pose from the EEPROM, and the
-    /// servos' state from before the reset. If the section is not valid, there is no robot, and the control never
+    /// servos' state from before the reset. If the section is not valid, there is no robot, and the controller never
     /// sends pulses.
     #[inline(never)]
     pub fn begin<M: Memory>(&mut self, flash: Region<'static>, memory: &M, restart: &Restart) {
@@ -158,7 +158,7 @@ impl Controller {
             ..Stance::RESTING
         });
         self.motion.resume_rest(stance.or(rest_stance.as_ref()));
-        // The reset may have come before the pose was in the EEPROM.
+        // The reset may have interrupted the write of the pose to the EEPROM.
         let is_saved = servos_before == ServosBefore::Unknown
             || rest_pose.as_ref() == Some(self.motion.pose());
         self.rest_pose_write = (!is_saved).then(|| REST_POSE_ADDRESS.start_write());
@@ -184,8 +184,8 @@ impl Controller {
         if frames == GOOD_SUPPLY_FRAMES {
             self.brown_outs = 0;
         }
-        // A computer that opens the port resets the board and then sends a line. By radio, lines come at any time, so a
-        // line while the servos wake is no evidence against a weak supply.
+        // A computer that opens the port resets the board and then sends a line. By radio, lines arrive at any time, so
+        // a line while the servos wake is no evidence against a weak supply.
         let may_be_port_reset = self.is_supply_suspected && self.reset_cause == Cause::External;
         if may_be_port_reset && self.has_heard_command && frames > WAKING_FRAMES {
             self.is_supply_suspected = false;
@@ -270,7 +270,7 @@ impl Controller {
         }
         let state = self.state();
         let supplies = self.motion.robot().supplies();
-        // A routine that `boot` began needs no sender of commands, so silence is no fault.
+        // A routine that `boot` started needs no sender of commands, so silence is not a fault.
         let deadman_ms = if self.is_unattended && self.routine.is_under_way() {
             0
         } else {
@@ -402,7 +402,7 @@ impl Controller {
         self.motion.stop();
     }
 
-    /// Prepares for a motion that an order begins: ends the routine, clears the fault, and invalidates
+    /// Prepares for a motion that an order starts: ends the routine, clears the fault, and invalidates
     /// the saved rest pose.
     fn prepare_for_motion(&mut self) {
         self.routine = Routine::NONE;

@@ -1,8 +1,7 @@
 //! Faults, and the patterns by which the LED shows them.
 //!
-//! Without a cable, the LED on D13 is all that a person sees. It blinks slowly while all
-//! is well. After a fault it flashes as many times as the fault's code says, pauses, and
-//! repeats that until a command moves the robot.
+//! Without a cable, the LED on D13 is all that a person sees. The LED blinks slowly while there is no fault. After a
+//! fault it flashes as many times as the fault's code says, pauses, and repeats this until a command moves the robot.
 
 /// A fault. Each of them stops the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +11,7 @@ pub enum Fault {
     Guard = 1,
     /// The supply is too low.
     Supply,
-    /// No command has come for as long as `deadman` allows.
+    /// No command has been received for as long as `deadman` allows.
     Link,
     /// The program hung and was restarted.
     Watchdog,
@@ -21,7 +20,7 @@ pub enum Fault {
     LateEdge,
     /// The stack has grown into the data.
     Stack,
-    /// Several resets in a row by a weak supply or, where a boot loader hides the cause, by the
+    /// Several consecutive resets caused by a weak supply or, where a boot loader hides the cause, by the reset
     /// button.
     BrownOut,
     /// The flash holds no usable robot.
@@ -35,26 +34,26 @@ impl Fault {
     }
 }
 
-/// Frames for which the LED is lit in a flash, and then dark.
+/// Frames for which the LED is lit in each flash, and again for which it is dark after the flash.
 const FLASH_FRAMES: u8 = 8;
 
 /// Frames of the additional pause after the last flash.
 const PAUSE_FRAMES: u8 = 48;
 
-/// Frames for which the LED is lit, and then dark, in the slow beat of a robot without a fault.
-const BEAT_FRAMES: u8 = 32;
+/// Frames for which the LED is lit, and again for which it is dark, in the heartbeat of a robot without a fault.
+const HEARTBEAT_FRAMES: u8 = 32;
 
 /// The pattern that the LED shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Led {
     /// Frames since the pattern began.
     frames: u8,
-    /// The pattern's code, 0 for the slow beat.
+    /// The fault's code; 0 for the heartbeat.
     code: u8,
 }
 
 impl Led {
-    /// The pattern at power-on: the slow beat, lit first.
+    /// The pattern at power-on: the heartbeat, lit first.
     pub const fn new() -> Self {
         Self { frames: 0, code: 0 }
     }
@@ -63,7 +62,7 @@ impl Led {
     pub fn advance(&mut self, fault: Option<Fault>) -> bool {
         let code = fault.map_or(0, Fault::code);
         let period = match code {
-            0 => 2 * BEAT_FRAMES,
+            0 => 2 * HEARTBEAT_FRAMES,
             code => 2 * FLASH_FRAMES * code + PAUSE_FRAMES,
         };
         if code == self.code {
@@ -73,7 +72,7 @@ impl Led {
             *self = Self { frames: 0, code };
         }
         if code == 0 {
-            self.frames < BEAT_FRAMES
+            self.frames < HEARTBEAT_FRAMES
         } else {
             self.frames < 2 * FLASH_FRAMES * code && self.frames & FLASH_FRAMES == 0
         }
@@ -97,7 +96,7 @@ mod tests {
         Fault::Robot,
     ];
 
-    /// Advances the LED by some frames and returns its runs of equal frames: true if lit, and the number of frames.
+    /// Advances the LED by some frames and returns its runs of equal frames, each as true if lit, and its length.
     fn record_runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
         let mut runs: Vec<(bool, usize)> = Vec::new();
         for _ in 0..frames {
@@ -110,7 +109,7 @@ mod tests {
         runs
     }
 
-    /// True if docs/faults.md has the LED lit `frame` frames after a pattern began.
+    /// True if, by docs/faults.md, the LED is lit `frame` frames after a pattern has begun.
     fn must_be_lit(fault: Option<Fault>, frame: usize) -> bool {
         let Some(fault) = fault else {
             return frame % 64 < 32;
@@ -121,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_fault_the_led_beats_slowly() {
+    fn without_a_fault_the_led_shows_the_heartbeat() {
         let runs = record_runs(&mut Led::default(), None, 1000);
         assert!(runs[0].0, "the LED is lit first");
         assert!(
@@ -158,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn any_pattern_begins_at_once_at_any_frame_of_any_other_and_goes_on() {
+    fn a_change_of_pattern_takes_effect_at_once_at_every_frame() {
         let shown_faults: Vec<Option<Fault>> =
             ALL_FAULTS.into_iter().map(Some).chain([None]).collect();
         for first_fault in &shown_faults {
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn another_fault_begins_its_pattern_at_once() {
+    fn the_pattern_of_a_second_fault_starts_with_a_whole_flash() {
         let mut led = Led::default();
         record_runs(&mut led, Some(Fault::Stack), 100);
         assert_eq!(

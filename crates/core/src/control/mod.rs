@@ -1,8 +1,8 @@
 //! The control: it carries out orders, computes a frame fifty times a second, and reacts
 //! to faults.
 //!
-//! It handles no text: it takes an [`order`] and may answer with a [`refusal`]. [`supervisor`] has the tables
-//! of its decisions; [`safety`], [`supply`] and [`contact`] watch the hardware; [`fault`] shows a fault on the LED.
+//! This layer handles no text: it accepts an [`order`] or answers with a [`refusal`]. [`supervisor`] has the tables
+//! of its decisions; [`safety`], [`supply`] and [`contact`] monitor the hardware; [`fault`] shows a fault on the LED.
 
 mod controller;
 

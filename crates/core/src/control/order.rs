@@ -8,7 +8,7 @@ use crate::numbers::units::{Angle, Sweep};
 /// An order whose arguments are within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Change to a gait for this many cycles, 0 for no limit; or begin a routine for this many rounds, 0 for the number
+    /// Change to a gait for this many cycles, 0 for no limit; or start a routine for this many rounds, 0 for the number
     /// in robot.toml. `stand` also wakes the servos.
     Gait(GaitId, u16),
     /// Go to a pose, given as chassis angles in servo order.
@@ -19,7 +19,7 @@ pub enum Order {
     Stop,
     /// End the pulses.
     Rest,
-    /// Set the pace of gaits in percent of their own pace, 10..=100.
+    /// Set the pace of gaits, in percent of the pace in robot.toml, 10..=100.
     Speed(u8),
     /// Change a setting of a servo.
     Set(Servo, Setting),
@@ -53,6 +53,6 @@ pub enum Setting {
 pub enum Acceptance {
     /// The order is done, or its motion has begun.
     Done,
-    /// The EEPROM is still to be written or read; the outcome follows later.
+    /// The order has to wait for the EEPROM; its outcome follows later.
     Pending,
 }

@@ -1,9 +1,9 @@
-//! The watch for faults of the supply, the serial line, the pulses and the stack, in every frame. It also times the
-//! `boot` action after power-on.
+//! The monitor of the supply, the serial line, the pulses and the stack: checks them for faults in every frame. It also
+//! times the `boot` action after power-on.
 //!
 //! The table of [`supervisor`] gives the response to each event. A fault stops the motion and stays until a
-//! command moves the robot again. Nothing here begins a motion by itself, except the `boot` action three seconds after
-//! the start.
+//! command moves the robot again. Nothing here starts a motion by itself, except the `boot` action three seconds after
+//! power-on.
 
 use crate::control::fault::{Fault, Led};
 use crate::control::supervisor::{self, Event, Response, State};
@@ -16,11 +16,11 @@ use crate::numbers::units::{FRAME_MS, FRAMES_PER_SECOND};
 pub struct Health {
     /// The last reading of the supplies.
     pub supply: Reading,
-    /// Pulse edges that have come late so far.
+    /// Number of late pulse edges so far.
     pub late_edges: u16,
     /// True while the stack has not grown into the data.
     pub is_stack_intact: bool,
-    /// True while the contact that the control waits for is closed.
+    /// True while the contact that the controller waits for is closed.
     pub is_contact_closed: bool,
 }
 
@@ -49,24 +49,24 @@ pub enum Reaction {
     EndPulses,
 }
 
-/// The state of the watch: the supply, the time without a command, the fault, and the notices to print.
+/// The state of the monitor: the supply, the time without a command, the fault, and the notices to print.
 #[derive(Clone, Debug)]
 pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,
     led: Led,
     is_lit: bool,
-    /// Late edges that have been handled as faults.
+    /// Number of late edges that have been handled as faults.
     handled_late_edges: u16,
     /// Milliseconds since the last command, up to 65535.
     silence_ms: u16,
-    /// Frames since power-on. [`FRAMES_TO_BOOT`] means that `boot` has been carried out or cancelled.
+    /// Frames since the program started. [`FRAMES_TO_BOOT`] means that `boot` has been carried out or cancelled.
     boot_timer: u8,
     /// The notices that wait to be printed, one bit for each [`Notice`].
     notices: u8,
 }
 
-/// A line that the robot prints without a command. The order of the variants is that of printing.
+/// An unsolicited line. Pending notices are printed in the order of the variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Notice {
@@ -104,7 +104,7 @@ impl Notice {
     }
 }
 
-/// Frames from power-on to `boot`, three seconds.
+/// Frames from the start of the program to the `boot` action: three seconds.
 const FRAMES_TO_BOOT: u8 = 3 * FRAMES_PER_SECOND as u8;
 
 impl Default for Safety {
@@ -185,7 +185,7 @@ impl Safety {
                 reaction = Reaction::Boot;
             }
         }
-        // The last command may have come at the end of the first frame that was counted, so that frame is subtracted.
+        // The last command may have arrived at the end of the first counted frame, so that frame is subtracted.
         if deadman_ms != 0 && self.silence_ms.saturating_sub(FRAME_MS) >= deadman_ms {
             reaction = reaction.max(self.handle_event(Event::Silence, state));
         }
@@ -233,14 +233,14 @@ impl Safety {
         self.is_lit = self.led.advance(fault);
     }
 
-    /// Records a fault and has it printed.
+    /// Records a fault, and requests that it be printed.
     #[inline(never)]
     pub fn record_fault(&mut self, fault: Fault) {
         self.fault = Some(fault);
         self.notify(Notice::Fault);
     }
 
-    /// Clears the fault, because an order moves the robot.
+    /// Clears the fault. Called when an order moves the robot.
     pub fn clear_fault(&mut self) {
         self.fault = None;
     }
@@ -255,7 +255,7 @@ impl Safety {
         self.silence_ms = 0;
     }
 
-    /// Has a notice printed.
+    /// Requests that a notice be printed.
     pub fn notify(&mut self, notice: Notice) {
         self.notices |= 1 << notice as u8;
     }

@@ -1,8 +1,8 @@
 //! The supervisor: a table with the response to every event in every state, and a table with the first action after
 //! every reset.
 //!
-//! A person sends a command, the supply falls, the line breaks, the program hangs: any two of these may happen in the
-//! same frame. So all responses are in one table, and all other code looks them up there. docs/faults.md prints both
+//! A person sends a command, the supply falls, the link breaks, the program hangs: any two of these may happen in the
+//! same frame. So all responses are in one table, and all other code looks them up there. docs/faults.md shows both
 //! tables.
 
 use crate::control::fault::Fault;
@@ -25,7 +25,7 @@ pub enum State {
 pub enum Event {
     /// The command `stand`.
     Stand,
-    /// A command that orders a motion other than `stand`.
+    /// A motion command other than `stand`.
     Move,
     /// The command `stop`.
     Stop,
@@ -33,7 +33,7 @@ pub enum Event {
     Rest,
     /// The command `save`.
     Save,
-    /// Three seconds have passed since power-on without a received byte or a fault.
+    /// Three seconds have passed since the program started, without a received byte or a fault.
     Boot,
     /// No command has been received for the time that `deadman` sets.
     Silence,
@@ -60,10 +60,9 @@ pub enum Response {
     RefuseResting,
     /// Refuse the command, because the supply is too low.
     RefuseSupply,
-    /// Freeze the pose, if there are pulses, and show the fault until a command orders a
-    /// motion.
+    /// Freeze the pose, if there are pulses, and show the fault until the next motion command.
     Freeze(Fault),
-    /// End the pulses, and show the fault until a command orders a motion.
+    /// End the pulses, and show the fault until the next motion command.
     EndPulses(Fault),
 }
 
@@ -100,7 +99,7 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     // Before the first measurement an order to write is accepted; the write waits for the measurement.
     let can_write = matches!(supply, None | Some(Level::Good));
     let [resting, still, walking] = match event {
-        // what happens              resting                  still                    walking
+        // event                     resting                  still                    walking
         Stand if can_move        => [Obey,                    Obey,                    Obey],
         Stand                    => [RefuseSupply,            RefuseSupply,            RefuseSupply],
         Move if can_move         => [RefuseResting,           Obey,                    Obey],
@@ -125,8 +124,8 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     }
 }
 
-/// Consecutive resets by a possibly weak supply after which the robot rests, because servos that wake would pull the
-/// supply down again.
+/// Number of consecutive resets, possibly caused by a weak supply, after which the robot rests: waking servos would
+/// pull the supply down again.
 pub const BROWN_OUTS_TO_REST: u8 = 3;
 
 /// The servos' state before the reset.
@@ -143,7 +142,7 @@ pub enum ServosBefore {
 /// The robot's first action after a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstAction {
-    /// The servos wake one after the other, in the pose of the last `rest` if the memory
+    /// The servos wake one after the other, in the pose of the last `rest` if the EEPROM
     /// holds one, otherwise in the neutral pose; then the robot stands.
     Wake,
     /// The servos wake one after the other with their pulses from before the reset; then the robot stands.

@@ -14,7 +14,7 @@ use lizard_avr::mul_unsigned;
 use crate::numbers::root::quotient;
 use crate::numbers::supplies::{Supplies, Thresholds};
 
-/// Steps of the analogue-to-digital converter.
+/// Number of steps of the analogue-to-digital converter.
 const FULL_SCALE: u16 = 1024;
 
 /// Readings of the analogue-to-digital converter, each 0..=1023; 0 before the first measurement.
@@ -56,7 +56,7 @@ pub struct Supply {
     level: Level,
     /// Consecutive frames whose readings are at a worse level, or at a better one, than the present level.
     frames_at_other_level: u8,
-    /// The level nearest to the present one among those of these frames.
+    /// The level of these frames that is nearest to the present one.
     nearest_other_level: Level,
     /// The number of valid readings so far, up to [`FRAMES_TO_WORSEN`].
     reading_count: u8,
@@ -70,7 +70,7 @@ const FRAMES_TO_WORSEN: u8 = 6;
 /// Frames for which a better level must last before it counts: one second.
 const FRAMES_TO_IMPROVE: u8 = 50;
 
-/// Voltage above its threshold that a better level needs, mV.
+/// Voltage by which a better level's threshold must be exceeded before that level counts, mV.
 const HYSTERESIS_MV: u16 = 150;
 
 impl Voltage {

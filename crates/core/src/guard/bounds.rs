@@ -2,7 +2,7 @@
 //!
 //! Each bound adds up the largest effects of all roundings of a number, in the order in which they happen. Only the
 //! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares them at every angle. If a
-//! test finds an error beyond its bound, the code or this derivation is wrong; chance is no explanation.
+//! test finds an error beyond its bound, the code or this derivation is wrong; it cannot be chance.
 //!
 //! Lengths of a five-bar (head or tail) are given in `U`, two steps of its bars, the unit in which the code computes
 //! the distance of the crank tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and `c2`
@@ -37,7 +37,7 @@
 //! **4. The products** of [`crate::guard::five_bar`]: the rounded square is off by half of its step, each shift
 //! loses at most one unit of its result, and each reciprocal less than one unit of its own.
 //!
-//! **5. A range.** Of a set of many pairs of angles, only the range of the distance `|k|` is known, `[near, far]`;
+//! **5. A range.** For a set of many pairs of angles, only the range of the distance `|k|` is known, `[near, far]`;
 //! sines and cosines in `e` are at most 1. Every term above then has its largest value: `z`, `|k|` and terms that grow
 //! with the distance at `far`, terms with the distance in the denominator at `near`. As `|k|` grows, `c` falls. So
 //! `|c|` is largest at an end of the range. There the sine is smallest, and the two roots differ from it most. The
@@ -102,7 +102,7 @@ pub struct ShapeError {
 }
 
 impl ShapeError {
-    /// The errors for couplers in whole steps, over a range of the squared distance of the crank tips, U^2.
+    /// Returns the errors for couplers in whole steps, over a range of the squared distance of the crank tips, U^2.
     pub fn of(left: i16, right: i16, [min_tips_sq, max_tips_sq]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
         let reach_sq = (a + b).powi(2).floor();
@@ -241,7 +241,7 @@ impl Product {
     }
 }
 
-/// The rounded numbers of a five-bar. Its errors depend on them and on its true bars.
+/// The rounded numbers of a five-bar. The errors of its margins depend on them and on the true bars.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundedBars {
     /// The scale of the five-bar's lengths.
@@ -270,49 +270,56 @@ pub struct EndErrors {
 }
 
 impl EndErrors {
-    /// The errors for true bars in mm, the same bars rounded to steps, and crank angles in the five-bar's own frame,
+    /// Returns the errors for a true five-bar, in mm, its bars rounded to steps, and crank angles in its own frame,
     /// deg. If the loop does not close, `type2` is the largest margin that the integer arithmetic may return.
     pub fn of(
-        bars: &kinematics::FiveBar,
+        five_bar: &kinematics::FiveBar,
         rounded_bars: impl Into<RoundedBars>,
         angles: [f64; 2],
     ) -> Self {
         let [left, right] = angles.map(Vector::direction);
         let tip_of = |crank: f64, direction: Vector| [crank * direction.x, crank * direction.y];
         let (left_tip, right_tip) = (
-            tip_of(bars.left_crank_length, left),
-            tip_of(bars.right_crank_length, right),
+            tip_of(five_bar.left_crank_length, left),
+            tip_of(five_bar.right_crank_length, right),
         );
         let distance_mm =
-            (bars.base + right_tip[0] - left_tip[0]).hypot(right_tip[1] - left_tip[1]);
+            (five_bar.base + right_tip[0] - left_tip[0]).hypot(right_tip[1] - left_tip[1]);
         let direction_sums = [left.x.abs() + right.x.abs(), left.y.abs() + right.y.abs()];
-        Self::compute(bars, rounded_bars.into(), direction_sums, [distance_mm; 2])
+        Self::compute(
+            five_bar,
+            rounded_bars.into(),
+            direction_sums,
+            [distance_mm; 2],
+        )
     }
 
-    /// The largest errors over all crank angles at which the distance of the crank tips is from `near` to `far`, mm.
+    /// Returns the largest errors over all crank angles at which the distance of the crank tips is from `near` to
+    /// `far`, mm.
     pub fn between(
-        bars: &kinematics::FiveBar,
+        five_bar: &kinematics::FiveBar,
         rounded_bars: impl Into<RoundedBars>,
         [near, far]: [f64; 2],
     ) -> Self {
-        Self::compute(bars, rounded_bars.into(), [2.0; 2], [near, far])
+        Self::compute(five_bar, rounded_bars.into(), [2.0; 2], [near, far])
     }
 
     /// Computes the errors from the sums of the two crank directions' `|cos|` and `|sin|`, and the range of the
     /// distance of the crank tips. Single letters are those of the module's derivation.
     fn compute(
-        bars: &kinematics::FiveBar,
+        five_bar: &kinematics::FiveBar,
         rounded_bars: RoundedBars,
         [cosine_sum, sine_sum]: [f64; 2],
         range_mm: [f64; 2],
     ) -> Self {
         let u_per_mm = steps_per_mm(rounded_bars.scale) / 2.0;
-        let crank_sum = u_per_mm * (bars.left_crank_length + bars.right_crank_length) + 0.5;
+        let crank_sum = u_per_mm * (five_bar.left_crank_length + five_bar.right_crank_length) + 0.5;
         let e_x = 1.25 + cosine_sum / 4.0 + MAX_DIRECTION_ERROR * crank_sum;
         let e_y = 0.5 + sine_sum / 4.0 + MAX_DIRECTION_ERROR * crank_sum;
         let e = e_x.hypot(e_y);
         let [near, far] = range_mm.map(|mm| u_per_mm * mm);
-        let [a, b] = [bars.left_coupler_length, bars.right_coupler_length].map(|mm| u_per_mm * mm);
+        let [a, b] =
+            [five_bar.left_coupler_length, five_bar.right_coupler_length].map(|mm| u_per_mm * mm);
         let z = e * (2.0 * far + e);
         let tips_sq_range = [(near - e).max(0.0).powi(2), (far + e).powi(2)];
 
@@ -421,14 +428,14 @@ mod tests {
             log_width in -4.0..0.7f64,
         ) {
             let [a1, a2, ..] = robot.degrees(&pose);
-            let bars = robot.measurements.lizard.end(kinematics::End::Head);
-            let Ok(exact_pose) = bars.forward(a1, a2) else {
+            let five_bar = robot.measurements.lizard.end(kinematics::End::Head);
+            let Ok(exact_pose) = five_bar.forward(a1, a2) else {
                 return Ok(());
             };
             let (distance_mm, width_mm) = (exact_pose.gap.length(), 10f64.powf(log_width));
             let range = [(distance_mm - share_below * width_mm).max(0.0), distance_mm + share_above * width_mm];
-            let errors_at_angles = EndErrors::of(&bars, &robot.ends[0], [a1, a2]);
-            let errors_over_range = EndErrors::between(&bars, &robot.ends[0], range);
+            let errors_at_angles = EndErrors::of(&five_bar, &robot.ends[0], [a1, a2]);
+            let errors_over_range = EndErrors::between(&five_bar, &robot.ends[0], range);
             prop_assert!(errors_over_range.min_type2 <= exact_pose.type2 + 1e-12);
             if !errors_over_range.are_margins_known {
                 return Ok(());

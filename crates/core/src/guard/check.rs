@@ -91,8 +91,8 @@ impl<'a> Robot<'a> {
         user_count
     }
 
-    /// The input of a record of the kind [`Step::UNTIL`]. It is [`Input::NONE`] if its pin is not usable, or if a servo
-    /// or the rail uses that pin, since the input's pull-up would disturb them.
+    /// Returns the input of a record of the kind [`Step::UNTIL`]; [`Input::NONE`] if its pin is not usable, or if a
+    /// servo or the rail uses that pin, since the input's pull-up would disturb them.
     pub(crate) fn input(&self, step: &Step) -> Input {
         let input = Input::of_step(step);
         match is_usable_pin(input.pin()) && self.count_users(input.pin()) == 0 {

@@ -5,8 +5,8 @@
 //! approximate the safe poses by a box. Head and tail share its code, because in its own frame the tail is
 //! built like the head.
 //!
-//! Every condition depends on one servo or on two, so `make prove` can compare all poses
-//! with floating point, by trying every pair of angles.
+//! Every condition depends on one servo or on two, so `make prove` can check the guard at every pose against
+//! floating-point arithmetic, by trying every pair of angles.
 
 use lizard_avr::flash;
 
@@ -42,7 +42,7 @@ flash! {
     ];
 }
 
-/// Returns the first limit that a pose breaks; `None` if it breaks none. A pose in certified cells is not measured,
+/// Returns the first limit that a pose violates, if any. A pose in certified cells is not measured,
 /// because all poses in them were proved safe when the section was made.
 #[inline(never)]
 pub fn find_hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
@@ -79,6 +79,7 @@ impl Clearance {
         for index in 0..cranks.len() {
             let servo = Servo::at(index);
             let mut crank = Direction::of(robot.neutral_angle_of(servo).swept(pose.0[index]));
+            // In the tail's own frame, see `Direction::in_tail_frame`.
             if servo.is_rear() {
                 crank.sin = -crank.sin;
             }
@@ -95,7 +96,7 @@ impl Clearance {
     }
 
     /// Measures the margins of the five-bar of head or tail.
-    // Not inlined, like `slider_length_sq`: the compiler would unroll a loop over two.
+    // Not inlined, like `slider_length_sq`: otherwise the compiler unrolls the loop over both ends, which costs flash.
     #[inline(never)]
     fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
         let [left, right] = end.servos();
@@ -116,7 +117,7 @@ impl Clearance {
         min_margin
     }
 
-    /// The first limit that this pose breaks; `None` if it breaks none. The margins come before the strokes, which are
+    /// Returns the first limit that this pose violates, if any. The margins come before the strokes, which are
     /// checked left before right.
     #[inline(never)]
     pub fn first_hazard(&self, robot: &Robot) -> Option<Hazard> {
@@ -145,7 +146,7 @@ impl Clearance {
     }
 }
 
-/// The squared length of a side's slider, in squared steps of its own scale.
+/// Returns the squared length of a side's slider, in squared steps of its own scale.
 #[inline(never)]
 fn slider_length_sq(robot: &Robot, side: Side, cranks: &[Direction; 4]) -> u32 {
     let [mut front, mut rear] = side.servos().map(|servo| *servo.of(cranks));

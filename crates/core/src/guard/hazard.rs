@@ -1,16 +1,16 @@
-//! Hazards: the limit that a pose breaks, and the value that breaks it.
+//! Hazards: the limit that a pose violates, and the value that violates it.
 
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::units::Sine;
 
 /// One of the ten margins of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Starts at 3, since the absence of a hazard has to be zero: see `Main::new`.
+// Discriminants start at 3, so that the absence of a hazard is stored as zero: see `Main::new`.
 #[repr(u8)]
 pub enum Margin {
     /// The margin between the two couplers of head or tail.
     Type2(End) = 3,
-    /// The margin between the crank on a servo and its coupler, negative where the elbow is bent inwards.
+    /// The margin between the crank on a servo and its coupler, negative if the elbow is bent inwards.
     Type1(Servo),
     /// The margin of the parallelogram leg of a servo, negative beyond a change point.
     Leg(Servo),
@@ -24,7 +24,7 @@ impl Margin {
     }
 }
 
-/// The first limit that a pose breaks.
+/// The first limit that a pose violates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hazard {
     /// A margin is below its limit.

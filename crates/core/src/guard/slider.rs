@@ -11,7 +11,7 @@ use crate::guard::trig::Direction;
 use crate::numbers::slider::Slider;
 
 impl Slider {
-    /// The slider mirrored in the y axis of the chassis, which turns a right one into a left one.
+    /// Returns the slider mirrored in the y axis of the chassis, which turns a right slider into a left one.
     pub const fn mirrored(self) -> Self {
         Self {
             offset: self.offset.wrapping_neg(),
@@ -19,11 +19,11 @@ impl Slider {
         }
     }
 
-    /// The slider's squared length, in squared steps, for these directions of the front crank and of the rear crank;
-    /// the latter in the tail's own frame.
+    /// Returns the slider's squared length, in squared steps, for these directions of the front crank and of the rear
+    /// crank; the latter in the tail's own frame.
     ///
-    /// Only for the left side, whose front arm is a right angle counter-clockwise of its crank; a right side has to be
-    /// mirrored first.
+    /// Valid only for the left side, whose front arm is a right angle counter-clockwise of its crank; a right side has
+    /// to be mirrored first.
     #[inline(never)]
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
         let arm_sum_x = rounded_upper_half(
@@ -47,7 +47,7 @@ mod tests {
     use crate::numbers::units::Angle;
     use crate::sample::{bounds, degrees, slider_in_steps, steps_per_mm};
 
-    /// Random sliders of robots that hobby servos can move, mm.
+    /// Yields random sliders, in mm, of robots that hobby servos can move.
     fn any_slider() -> impl Strategy<Value = kinematics::Slider> {
         (
             1.0..300.0f64,
@@ -107,7 +107,7 @@ mod tests {
         }
 
         #[test]
-        fn a_stroke_includes_its_ends_and_not_a_step_more(
+        fn a_stroke_includes_its_ends_but_no_step_beyond_them(
             min in 1u16..60_000,
             stroke_length in 1u16..5_000,
         ) {

@@ -18,7 +18,7 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// The direction of an angle, read from the table.
+    /// Returns the direction of an angle, read from the table.
     pub fn of(angle: Angle) -> Self {
         let angle = angle.0;
         let quarter_angle = angle & 0x3fff;
@@ -33,7 +33,8 @@ impl Direction {
         Self { sin, cos }
     }
 
-    /// The direction mirrored in the y axis of the chassis, which turns a crank of the right side into one of the left.
+    /// Returns the direction mirrored in the y axis of the chassis, which turns a crank of the right side into one of
+    /// the left.
     pub const fn mirrored(self) -> Self {
         Self {
             sin: self.sin,
@@ -41,8 +42,8 @@ impl Direction {
         }
     }
 
-    /// The direction mirrored in the x axis of the chassis: that of a tail crank in the tail's own frame, in which the
-    /// tail is built like the head.
+    /// Returns the direction mirrored in the x axis of the chassis: that of a tail crank in the tail's own frame, in
+    /// which the tail is built like the head.
     pub const fn in_tail_frame(self) -> Self {
         Self {
             sin: -self.sin,
@@ -54,10 +55,11 @@ impl Direction {
 /// The number of steps in the table.
 const STEP_COUNT: usize = 128;
 
-/// The sine of an angle in the first quarter turn, 0..=0x4000.
+/// Returns the sine of an angle in the first quarter turn, 0..=0x4000.
 fn first_quadrant_sine(quarter_angle: u16) -> i16 {
     let index = usize::from(quarter_angle >> 7);
     let entry = QUARTER_WAVE_SINES.at(index).load();
+    // At 0x4000, `at` returns the last entry.
     let next_entry = QUARTER_WAVE_SINES.at(index + 1).load();
     // A step rises by at most 402, more than a byte holds, so its two bytes are multiplied separately.
     let step = (next_entry - entry) as u16;
@@ -70,13 +72,13 @@ flash! {
     const QUARTER_WAVE_SINES: [i16; STEP_COUNT + 1] = quarter_wave();
 }
 
-/// The table of a quarter wave, computed at compile time, so that no float reaches the microcontroller.
+/// Computes the table of a quarter wave at compile time, so that no float reaches the microcontroller.
 const fn quarter_wave() -> [i16; STEP_COUNT + 1] {
     let mut table = [0; STEP_COUNT + 1];
     let mut k = 0;
     while k < STEP_COUNT {
         let x = core::f64::consts::FRAC_PI_2 * k as f64 / STEP_COUNT as f64;
-        // Taylor series; the last term kept is below 1e-13 on this interval.
+        // Taylor series; the first term left out is below 1e-11 on this interval.
         let mut term = x;
         let mut sum = x;
         let mut n = 1.0;

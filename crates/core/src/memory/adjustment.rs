@@ -25,7 +25,7 @@ pub struct Adjustment {
 }
 
 impl Adjustment {
-    /// The adjustment that leaves a servo as robot.toml defines it.
+    /// Returns the adjustment that leaves a servo as robot.toml defines it.
     pub const fn of(factory: &Calibration) -> Self {
         Self {
             trim: Sweep(0),
@@ -93,13 +93,13 @@ impl Adjustment {
     }
 }
 
-/// Returns the sweep if its pulse is allowed; otherwise the last sweep on the way to it from neutral whose pulse is
-/// allowed. The neutral pulse must be allowed.
+/// Returns the sweep if its pulse is allowed; otherwise the farthest sweep in its direction whose pulse is allowed. The
+/// neutral pulse must be allowed.
 #[inline(never)]
 fn limit_to_pulses(servo: &Calibration, sweep: Sweep, [min_width, max_width]: [u16; 2]) -> Sweep {
     let neutral_width = servo.neutral_width.0;
-    // The pulse width of a sweep of n steps is the neutral width plus n times the gain, rounded to a cycle. As long as n
-    // times the gain is at most `max_gain_multiple`, the width is within both limits.
+    // The pulse width of a sweep of n steps is the neutral width plus n times the gain, rounded to a cycle. As long as
+    // n times the gain is at most `max_gain_multiple`, the width is within both limits.
     let max_gain_multiple = if (servo.gain < 0) == (sweep.0 < 0) {
         mul_unsigned(max_width - neutral_width, ONE_Q14 as u16) + HALF_Q14 - 1
     } else {
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
     use crate::sample::{STEPS_PER_DEGREE, Sample};
 
-    /// Any adjustment that the console accepts.
+    /// Yields any adjustment that the console accepts.
     fn any_adjustment() -> impl Strategy<Value = Adjustment> {
         let sweep = -3641i16..=3641;
         (
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn every_scale_is_read_back_as_it_was_set_and_keeps_the_direction() {
+    fn every_scale_is_read_back_as_set_and_keeps_the_direction() {
         for gain in [1, -1] {
             for scale in 500..=2000 {
                 let mut adjustment = Adjustment {

@@ -17,7 +17,7 @@ use crate::numbers::robot::Robot;
 /// The addresses of the two copies of the settings.
 pub const COPY_ADDRESSES: [Address; 2] = [copy_address(0), copy_address(1)];
 
-/// The address of the first copy for an even number, of the second copy for an odd number.
+/// Returns the address of the first copy for an even number, of the second copy for an odd number.
 const fn copy_address(number: usize) -> Address {
     Address((number as u16 & 1) * 64)
 }
@@ -136,8 +136,8 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<RecordWrit
     Some(copy_address(copies.latest_index ^ 1).start_write())
 }
 
-/// The pose of the last rest. `None` if the robot has moved since, or if the record is damaged or belongs to other
-/// servos.
+/// Returns the pose of the last rest; `None` if the robot has moved since, or if the record is damaged or belongs to
+/// other servos.
 pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT_BYTES];
     REST_POSE_ADDRESS.read_content(memory, &mut bytes);

@@ -12,7 +12,7 @@ pub trait Memory {
     /// True once the last write has ended; only then may the memory be read or written.
     fn is_ready(&self) -> bool;
 
-    /// The byte at an address below 1024.
+    /// Reads the byte at an address below 1024.
     fn read(&self, address: u16) -> u8;
 
     /// Begins to write a byte.
@@ -25,7 +25,7 @@ pub const MEMORY_BYTES: usize = 1024;
 /// The number of bytes in a record's content.
 pub const CONTENT_BYTES: usize = 42;
 
-// `RecordWrite::advance` takes the byte of the CRC from the parity of the step.
+// `RecordWrite::advance` selects the byte of the CRC by the parity of the step.
 const _: () = assert!(CONTENT_BYTES.is_multiple_of(2));
 
 /// The content of a record.
@@ -68,7 +68,7 @@ pub enum Progress {
 
 /// The progress of the current step's byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Starts at 1, because `None::<RecordWrite>` has to be zero: see `Main::new`.
+// Discriminants start at 1, so that `None::<RecordWrite>` is all zeros: see `Main::new`.
 #[repr(u8)]
 enum ByteState {
     /// The byte is to be written, unless the memory holds its value already.
@@ -210,7 +210,7 @@ mod tests {
         panic!("the write never ends");
     }
 
-    /// The record's state, and its content even if the record is not valid.
+    /// Returns the record's state, and its content even if the record is not valid.
     fn read_record(eeprom: &Eeprom) -> (RecordState, Content) {
         let mut content = [0; CONTENT_BYTES];
         ADDRESS.read_content(eeprom, &mut content);
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn rewriting_touches_only_the_mark_and_bytes_that_differ() {
+    fn rewriting_changes_only_the_mark_and_the_bytes_that_differ() {
         let mut eeprom = Eeprom::blank();
         let mut content = [7; CONTENT_BYTES];
         write_record(&mut eeprom, &content);

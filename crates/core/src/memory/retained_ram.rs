@@ -3,12 +3,11 @@
 //!
 //! RAM keeps its contents as long as there is power. The boot loader of the UNO clears the register with the
 //! cause of the reset, and does not pass its value on. So a mark and checksums in these bytes tell the next run
-//! whether power was lost, whether the program hung, and what the state of the servos was. Random bytes look as if
-//! power was not lost once in 32 768 times, and then look like a stance once in 256 times.
+//! whether power was lost, whether the program hung, and what the state of the servos was. Random bytes pass for those
+//! of a powered chip with a probability of 1 in 32 768, and then contain a seemingly valid stance with one of 1 in 256.
 //!
-//! A reset may come between any two stores, and nothing is lost: there are two copies of
-//! the stance, which are written alternately. One byte says which of them is complete,
-//! and it is stored last.
+//! A reset may occur between any two stores without a loss: there are two copies of the stance, which are written
+//! alternately. One byte, which is stored last, tells which of them is complete.
 //!
 //! | cell | content |
 //! |---|---|
@@ -28,7 +27,7 @@ pub const CELL_COUNT: usize = FIRST_COPY_CELL + 2 * CELLS_PER_COPY;
 
 /// Bytes that survive a reset. At power-on each may hold any value.
 pub trait Cells {
-    /// The byte in a cell; `index` is below [`CELL_COUNT`].
+    /// Reads the byte in a cell; `index` is below [`CELL_COUNT`].
     fn get(&self, index: usize) -> u8;
 
     /// Stores a byte, in one instruction and in the order of the calls.
@@ -63,7 +62,7 @@ const EMPTY_STATE: u8 = 0x7f;
 
 /// Returns the cause of the reset and the state from before it, and marks the program as
 /// running. `reported_cause` is the cause that the chip reports, or `None` if a boot loader has
-/// cleared it. To be called once, before the watchdog starts.
+/// cleared it. Call it once, before the watchdog starts.
 #[inline(never)]
 pub fn begin<C: Cells>(cells: &C, reported_cause: Option<Cause>) -> Restart {
     let (state, reset_count) = (cells.get(STATE_CELL), cells.get(RESET_COUNT_CELL));

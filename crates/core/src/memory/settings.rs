@@ -35,13 +35,13 @@ const DEADMAN_OFFSET: usize = 40;
 /// The robot's action three seconds after power-on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Boot {
-    /// A gait; `stand` is one.
+    /// A gait, which may be `stand`.
     Gait(GaitId),
     /// No pulses.
     Rest,
 }
 
-/// Everything that `save` stores.
+/// The settings that `save` stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     bytes: Content,
@@ -53,7 +53,7 @@ impl Settings {
         bytes: [0; CONTENT_BYTES],
     };
 
-    /// The settings of robot.toml.
+    /// Returns the settings of robot.toml.
     #[inline(never)]
     pub fn of(robot: &Robot) -> Self {
         let mut settings = Self::NONE;
@@ -73,7 +73,7 @@ impl Settings {
         self.put(HASH_OFFSET + 2, (hash >> 16) as u16);
     }
 
-    /// A record that holds a pose instead of settings: each servo's sweep takes the place of its trim.
+    /// Returns a record that holds a pose instead of settings: each servo's sweep takes the place of its trim.
     #[inline(never)]
     pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
         let mut record = Self::NONE;
@@ -219,9 +219,9 @@ impl Settings {
     }
 }
 
-/// The number under which a gait is saved, never 0. It is a hash of the gait's name, so that the gait
-/// is found again when robot.toml has other gaits. The host that makes a robot has
-/// checked that no two of its gaits have the same number.
+/// Returns the number under which a gait is saved: a hash of the gait's name, never 0. With a hash, the gait is found
+/// again even if robot.toml has other gaits by then. The host that makes a robot has checked that no two of its gaits
+/// have the same number.
 pub fn gait_key(name: impl Iterator<Item = u8>) -> u16 {
     let mut hash = 0u16;
     for byte in name {

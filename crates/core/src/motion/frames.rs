@@ -54,7 +54,7 @@ mod resume;
 /// Frames from the wake-up of one servo to that of the next: 0.1 s, so that the supply does not sag.
 const WAKE_INTERVAL_FRAMES: u8 = 5;
 
-/// The speed setting at which a gait runs at its own pace, percent.
+/// The speed setting at which a gait runs at the pace in robot.toml, percent.
 const FULL_SPEED_PERCENT: u8 = 100;
 
 /// Frames from the command that wakes the servos until all four are awake and motion may begin.
@@ -72,7 +72,7 @@ pub struct Motion {
     cycle_count: CycleCount,
     /// True in the frame in which the robot has come to a standstill, see [`Target::Standstill`].
     has_come_to_standstill: bool,
-    /// The pace of gaits, in percent of their own.
+    /// The pace of gaits, in percent of the pace in robot.toml.
     speed_percent: u8,
     /// True while the supply limits the pace to [`Robot::slow_pace`].
     is_slow: bool,
@@ -87,7 +87,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The motion of a robot at power-on: its servos wake, then it stands.
+    /// Creates the motion of a robot at power-on: its servos wake, then it stands.
     pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unstarted(robot);
         motion.speed_percent = FULL_SPEED_PERCENT;
@@ -98,7 +98,8 @@ impl Motion {
         motion
     }
 
-    /// A motion that has not begun. With [`Robot::NONE`] all its bits are zero, so it needs no initial value in flash.
+    /// Creates a motion that has not begun. With [`Robot::NONE`] all its bits are zero, so it needs no initial value in
+    /// flash.
     /// [`Motion::load_robot`] or [`Motion::begin`] has to follow, then [`Motion::calibrate`] for every servo.
     pub const fn unstarted(robot: Robot<'static>) -> Self {
         Self {
@@ -219,7 +220,7 @@ impl Motion {
     /// Queues a move to a pose.
     ///
     /// # Errors
-    /// Returns the limit that the pose breaks; then nothing has changed.
+    /// Returns the limit that the pose violates; then nothing has changed.
     pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
         match self.hazard_of(pose) {
             Some(hazard) => Err(hazard),
@@ -242,7 +243,7 @@ impl Motion {
         self.freeze(State::Resting);
     }
 
-    /// Sets the pace of gaits, in percent of their own, 10..=100.
+    /// Sets the pace of gaits, in percent of the pace in robot.toml, 10..=100.
     pub fn set_speed(&mut self, percent: u8) {
         self.speed_percent = percent;
     }
@@ -278,7 +279,7 @@ impl Motion {
             let mut width = calibration.width(self.stance.pose.0[index]);
             if self.is_settling && sent_width.0 != 0 {
                 // A servo's first pulse repeats the last stored width, even one from before a
-                // reset: the reset may have come while the pulses were settling, or before a
+                // reset: the reset may have occurred while the pulses were settling, or before a
                 // stored width was sent.
                 let is_repeated = is_first_frame || frames_awake_before < wake_frame;
                 let max_change = if is_repeated {
@@ -318,7 +319,7 @@ impl Motion {
         }
     }
 
-    /// The first limit that a pose breaks: a servo's travel, or a limit of the guard.
+    /// Returns the first limit that a pose violates, if any: a servo's travel, or a limit of the guard.
     fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
         match pose.first_servo_beyond_travel(&self.calibration) {
             Some(servo) => Some(Hazard::Travel(servo)),
@@ -372,7 +373,7 @@ impl Motion {
                     if is_braking {
                         0
                     } else {
-                        pace::of_percent(percent)
+                        pace::from_percent(percent)
                     },
                 );
                 *phase = gait.advance(*phase, *pace);
@@ -399,7 +400,7 @@ impl Motion {
         }
     }
 
-    /// Begins the move to the next target once the pace of the old motion is 0.
+    /// Starts the move to the next target once the pace of the old motion is 0.
     #[inline(always)]
     fn start_next_target(&mut self) {
         if let Some(target) = self.next_target

@@ -12,7 +12,7 @@ use crate::numbers::pose::Pose;
 use crate::numbers::units::{CYCLE, Sweep, phase16};
 
 impl Gait {
-    /// The pose at `phase` (1/2^24 cycle), computed from the waveforms of a robot.
+    /// Returns the pose at `phase` (1/2^24 cycle), computed from the waveforms of a robot.
     pub fn pose(&self, waves: Flash<[Wave]>, phase: u32) -> Pose {
         let mut pose = Pose::NEUTRAL;
         for (sweep, channel) in pose.0.iter_mut().zip(&self.channels) {
@@ -23,7 +23,7 @@ impl Gait {
         pose
     }
 
-    /// The phase one frame later, at `pace` (1024 is full pace).
+    /// Returns the phase one frame later, at `pace` (1024 is full pace).
     pub const fn advance(&self, phase: u32, pace: u16) -> u32 {
         let step = self.increment.wrapping_mul(pace as i32) >> 10;
         phase.wrapping_add(step as u32) & (CYCLE - 1)
@@ -31,7 +31,7 @@ impl Gait {
 }
 
 impl Channel {
-    /// The sweep at a phase of 1/65536 cycle.
+    /// Returns the sweep at `phase` (1/65536 cycle).
     pub fn sweep(&self, wave: Flash<Wave>, phase: u16) -> Sweep {
         if self.gain == 0 {
             return Sweep(0);
@@ -78,8 +78,8 @@ mod tests {
         ) {
             let (offset, gain) = channel;
             let channel = Channel { wave: 0, offset, gain };
-            let table = make_wave(|n| samples[n]);
-            let actual = f64::from(channel.sweep(Flash::from(&table), phase).0);
+            let wave = make_wave(|n| samples[n]);
+            let actual = f64::from(channel.sweep(Flash::from(&wave), phase).0);
             let position = f64::from(phase.wrapping_add(offset)) / 1024.0;
             let (sample, next_sample) = (samples[position as usize], samples[(position as usize + 1) % SAMPLES_PER_WAVE]);
             let rise = f64::from(next_sample) - f64::from(sample);
@@ -109,25 +109,25 @@ mod tests {
     }
 
     #[test]
-    fn every_sample_is_met_at_its_phase_and_the_first_follows_the_last() {
-        let table = make_wave(|n| 100 * n as i16 - 3000);
+    fn every_sample_is_read_at_its_phase_and_the_first_follows_the_last() {
+        let wave = make_wave(|n| 100 * n as i16 - 3000);
         for n in 0..SAMPLES_PER_WAVE {
-            let sweep = PLAIN_CHANNEL.sweep(Flash::from(&table), (n << 10) as u16);
-            assert_eq!(sweep, Sweep(table[n]));
+            let sweep = PLAIN_CHANNEL.sweep(Flash::from(&wave), (n << 10) as u16);
+            assert_eq!(sweep, Sweep(wave[n]));
         }
-        let wrapped_sweep = PLAIN_CHANNEL.sweep(Flash::from(&table), 0xfe00);
-        assert_eq!(wrapped_sweep.0, (table[63] + table[0]) / 2);
+        let wrapped_sweep = PLAIN_CHANNEL.sweep(Flash::from(&wave), 0xfe00);
+        assert_eq!(wrapped_sweep.0, (wave[63] + wave[0]) / 2);
     }
 
     #[test]
     fn halves_round_up_after_interpolation_and_after_the_gain() {
-        let table = make_wave(|n| [0, 1, 0, -1][n % 4]);
+        let wave = make_wave(|n| [0, 1, 0, -1][n % 4]);
         let sweep_at = |phase, gain| {
             Channel {
                 gain,
                 ..PLAIN_CHANNEL
             }
-            .sweep(Flash::from(&table), phase)
+            .sweep(Flash::from(&wave), phase)
             .0
         };
         assert_eq!(
@@ -145,24 +145,24 @@ mod tests {
     #[test]
     fn an_offset_reads_ahead_a_negative_gain_reverses_and_a_zero_gain_holds_still() {
         let robot = Sample::odd();
-        let table = Flash::from(&robot.content.waves[1]);
+        let wave = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
             let offset_channel = Channel {
                 offset: 0x1800,
                 ..PLAIN_CHANNEL
             };
-            let plain_sweep = PLAIN_CHANNEL.sweep(table, phase.wrapping_add(0x1800));
-            assert_eq!(offset_channel.sweep(table, phase), plain_sweep);
+            let plain_sweep = PLAIN_CHANNEL.sweep(wave, phase.wrapping_add(0x1800));
+            assert_eq!(offset_channel.sweep(wave, phase), plain_sweep);
             let reversed_channel = Channel {
                 gain: -(1 << 14),
                 ..offset_channel
             };
-            assert_eq!(reversed_channel.sweep(table, phase), Sweep(-plain_sweep.0));
+            assert_eq!(reversed_channel.sweep(wave, phase), Sweep(-plain_sweep.0));
             let still_channel = Channel {
                 gain: 0,
                 ..offset_channel
             };
-            assert_eq!(still_channel.sweep(table, phase), Sweep(0));
+            assert_eq!(still_channel.sweep(wave, phase), Sweep(0));
         }
     }
 
@@ -173,8 +173,8 @@ mod tests {
             for phase in (0..CYCLE).step_by(99_991) {
                 let pose = gait.pose(robot.waves(), phase);
                 for (sweep, channel) in pose.0.iter().zip(&gait.channels) {
-                    let table = Flash::from(&robot.content.waves[usize::from(channel.wave)]);
-                    assert_eq!(*sweep, channel.sweep(table, (phase >> 8) as u16));
+                    let wave = Flash::from(&robot.content.waves[usize::from(channel.wave)]);
+                    assert_eq!(*sweep, channel.sweep(wave, (phase >> 8) as u16));
                 }
             }
         }

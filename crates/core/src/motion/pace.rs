@@ -14,7 +14,7 @@ pub const FULL_PACE: u16 = 1024;
 /// once at each corner, and `crawl` would lose 1.2 % of its distance.
 const PACE_STEP: u16 = FULL_PACE.div_ceil(7);
 
-/// The pace one frame later, as it approaches `target`.
+/// Returns the pace one frame later, on its way to `target`.
 pub fn step_toward(pace: u16, target: u16) -> u16 {
     target
         .max(pace.saturating_sub(PACE_STEP))
@@ -23,7 +23,7 @@ pub fn step_toward(pace: u16, target: u16) -> u16 {
 
 /// Converts percent to a pace. The factor 2622/256 is 0.02 % more than 1024/100, so the error is below one step of the
 /// pace and, at the lowest pace of 10 %, below one percent of it.
-pub fn of_percent(percent: u8) -> u16 {
+pub fn from_percent(percent: u8) -> u16 {
     ((mul_unsigned(u16::from(percent), 2622) + 128) >> 8) as u16
 }
 
@@ -52,7 +52,7 @@ mod tests {
         for percent in 10..=100u8 {
             let exact = f64::from(percent) * 1024.0 / 100.0;
             // 2622/256 is 0.02 % more than `exact`; the result is rounded to nearest.
-            let error = f64::from(of_percent(percent)) - exact * 1.000_214;
+            let error = f64::from(from_percent(percent)) - exact * 1.000_214;
             assert!(error.abs() <= 0.501, "{percent}: {error}");
         }
     }

@@ -28,7 +28,7 @@ pub struct PointToPointMove {
 }
 
 impl PointToPointMove {
-    /// A move between two poses.
+    /// Creates a move between two poses.
     pub fn new(from: &Pose, to: &Pose, slew: Slew) -> Self {
         let distance = from.largest_turn_to(to);
         let frames = (mul_unsigned(distance, slew.frames_per_distance) >> 16) as u16 + 1;
@@ -74,7 +74,7 @@ impl PointToPointMove {
     }
 }
 
-/// The smoothstep `3 u^2 - 2 u^3`, Q15; only for `u` below 1.
+/// Returns the smoothstep `3 u^2 - 2 u^3`, Q15; only for `u` below 1.
 fn smoothstep(u: u16) -> u16 {
     let squared = (mul_unsigned(u, u) >> 15) as u16;
     (mul_unsigned(squared, 3 * (FULL_DURATION / 2) - u) >> 14) as u16
@@ -95,7 +95,7 @@ mod tests {
         Pose(sweeps.map(Sweep))
     }
 
-    /// The poses of a move at full pace, from its start on.
+    /// Returns the poses of a move at full pace, from its start on.
     fn poses_of_move(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
         let mut path = PointToPointMove::new(from, to, slew);
         let mut poses = Vec::from([*from]);
@@ -107,14 +107,14 @@ mod tests {
         poses
     }
 
-    /// The sweeps of one servo in a move, frame by frame.
+    /// Returns the sweeps of one servo in a move, frame by frame.
     fn sweeps_of_move(from: i16, to: i16, slew: Slew) -> Vec<i16> {
         let [from, to] = [from, to].map(|sweep| pose_of([0, 0, sweep, 0]));
         let poses = poses_of_move(&from, &to, slew);
         poses.iter().map(|pose| pose.0[2].0).collect()
     }
 
-    /// Random slew limits from 10 to 1000 deg/s.
+    /// Yields random slew limits from 10 to 1000 deg/s.
     fn any_slew() -> impl Strategy<Value = Slew> {
         (Slew::MIN_PER_FRAME..=3640).prop_map(Slew::new)
     }
@@ -123,7 +123,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(3000))]
 
         #[test]
-        fn a_move_keeps_the_slew_limit_wastes_no_time_and_arrives(
+        fn a_move_keeps_the_slew_limit_takes_no_longer_than_needed_and_arrives(
             from: i16,
             to: i16,
             slew in any_slew(),

@@ -8,7 +8,7 @@ use crate::numbers::robot::Robot;
 /// The robot's activity. The move that leads to an activity counts as that activity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// A gait (`stand` is one).
+    /// Walking with a gait, or standing with the gait `stand`.
     Gait(GaitId),
     /// Going to a commanded pose and staying there.
     Pose,
@@ -21,7 +21,7 @@ pub enum Activity {
 
 /// The target of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Starts at 1, since `None` has to be zero: see `Main::new`.
+// Discriminants start at 1, so that `Option::None` is all zeros: see `Main::new`.
 #[repr(u8)]
 pub enum Target {
     /// A pose, to be held.
@@ -56,7 +56,9 @@ pub enum State {
     },
     /// Cycling through a gait.
     Cycling {
+        /// The gait's index.
         id: GaitId,
+        /// The gait, as loaded from the section.
         gait: Gait,
         /// The phase, 1/2^24 cycle.
         phase: u32,
@@ -66,7 +68,7 @@ pub enum State {
 }
 
 impl State {
-    /// The state at the beginning of a gait: phase 0, pace 0.
+    /// Returns the state at the beginning of a gait: phase 0, pace 0.
     pub fn cycling(robot: &Robot, id: GaitId) -> Self {
         Self::Cycling {
             id,

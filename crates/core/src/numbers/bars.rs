@@ -53,8 +53,8 @@ impl Bars {
         padding: 0,
     };
 
-    /// The bars with these lengths in steps: the distance between the shafts, the left and the right crank, whose sum
-    /// is at most [`MAX_LENGTH_STEPS`]; and the left and the right coupler.
+    /// Creates the bars with these lengths in steps: the distance between the shafts, the left and the right crank,
+    /// whose sum is at most [`MAX_LENGTH_STEPS`]; and the left and the right coupler.
     ///
     /// # Panics
     /// If a coupler is shorter than [`MIN_COUPLER_STEPS`].

@@ -32,7 +32,7 @@ impl Calibration {
         travel_max: Sweep(0),
     };
 
-    /// The pulse width that turns the servo to `sweep`, which has to be within the travel.
+    /// Returns the pulse width that turns the servo to `sweep`, which has to be within the travel.
     pub fn width(&self, sweep: Sweep) -> PulseWidth {
         PulseWidth(
             self.neutral_width
@@ -41,20 +41,20 @@ impl Calibration {
         )
     }
 
-    /// The pulse width for any sweep, even one beyond the travel, in CPU cycles, clamped to 0..=65535.
+    /// Returns the pulse width for any sweep, even one beyond the travel, in CPU cycles, clamped to 0..=65535.
     #[inline(never)]
     pub fn clamped_width(&self, sweep: Sweep) -> u16 {
         let pulse = i32::from(self.neutral_width.0) + self.width_change(sweep);
         pulse.clamp(0, i32::from(u16::MAX)) as u16
     }
 
-    /// The difference of the pulse width at `sweep` from the neutral width, CPU cycles.
+    /// Returns the difference of the pulse width at `sweep` from the neutral width, CPU cycles.
     fn width_change(&self, sweep: Sweep) -> i32 {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
 
-    /// The largest change of the pulse width in a frame, in CPU cycles and at least one, if the servo may turn by
-    /// `per_frame`, in 1/65536 turn.
+    /// Returns the largest change of the pulse width in a frame, in CPU cycles and at least one, if the servo may turn
+    /// by `per_frame`, in 1/65536 turn.
     pub fn max_width_change(&self, per_frame: u16) -> u16 {
         let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
         cycles.max(1)

@@ -44,9 +44,9 @@ impl Cells<'static> {
 }
 
 impl<'a> Cells<'a> {
-    /// The map whose `row_count` rows begin at index `start` of `rows`. The rows have consecutive row numbers from
-    /// `first_row` on, which wrap around after a turn. Each row is stored as its first and its last column number, both
-    /// inclusive; if the first is greater than the last, the row is empty. A row number is a sweep divided by
+    /// Creates the map whose `row_count` rows begin at index `start` of `rows`. The rows have consecutive row numbers
+    /// from `first_row` on, which wrap around after a turn. Each row is stored as its first and its last column number,
+    /// both inclusive; if the first is greater than the last, the row is empty. A row number is a sweep divided by
     /// 2^[`ROW_BITS`], a column number a sweep divided by 2^[`COLUMN_BITS`], both rounded down.
     #[inline(always)]
     pub const fn from_rows(
@@ -63,7 +63,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The map that consists of all `rows`, of which there are at most 255.
+    /// Creates the map that consists of all `rows`, of which there are at most 255.
     pub const fn new(first_row: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
         Self::from_rows(first_row, 0, rows.len() as u8, rows)
     }
@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
 
-    /// The reference for [`Cells::contains`], by division and without a shortcut.
+    /// The reference implementation of [`Cells::contains`], by division and without a shortcut.
     fn contains_by_division(first_row: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
         // A turn has 256 rows; the first row follows the last.

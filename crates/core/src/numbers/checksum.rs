@@ -1,9 +1,9 @@
 //! The checksum of all stored data: the 16-bit CRC with the polynomial x^16 + x^12 + x^5 + 1 and all ones as its
 //! initial value (CRC-16/IBM-3740).
 //!
-//! It detects every change of one or two bits within 32 751 bits, every odd number of changed bits, and all changes
-//! within sixteen neighbouring bits; of all other changes it misses one in 65 536. The `crc` crate would take six
-//! times the flash; the tests compare with it.
+//! The CRC detects every change of one or two bits within 32 751 bits, every odd number of changed bits, and all
+//! changes within sixteen neighbouring bits; of all other changes it misses one in 65 536. The `crc` crate would take
+//! six times the flash; it is the reference of the tests.
 
 /// The checksum of the bytes that have been added so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +13,7 @@ impl Checksum {
     /// The checksum of no bytes.
     pub const EMPTY: Self = Self(u16::MAX);
 
-    /// The checksum after one more byte.
+    /// Returns the checksum after one more byte.
     #[cfg_attr(target_arch = "avr", inline(never))] // so that flash holds it once
     pub const fn with_byte(self, byte: u8) -> Self {
         // Processes all eight bits at once: the byte is XORed with the high half of the sum, and the bits shifted out
@@ -43,7 +43,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_checksum_is_that_of_the_crc_catalogue(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        fn the_checksum_equals_that_of_the_crc_catalogue(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
             let catalogue = Crc::<u16>::new(&CRC_16_IBM_3740);
             prop_assert_eq!(Checksum::of(&bytes).0, catalogue.checksum(&bytes));
         }

@@ -72,7 +72,7 @@ impl CouplerLengths {
         folded_zeros: 32,
     };
 
-    /// The left and the right coupler of these lengths, in steps.
+    /// Creates a left and a right coupler of these lengths, in steps.
     pub const fn new(left: i16, right: i16) -> Self {
         Self {
             left,
@@ -117,7 +117,7 @@ pub struct TriangleShape {
 }
 
 impl<'a> Couplers<'a> {
-    /// Couplers of these lengths, with their tables. A shape that needs a missing table is unknown.
+    /// Creates couplers of these lengths, with their tables. A shape that needs a missing table is unknown.
     pub const fn new(lengths: CouplerLengths, tables: Tables<'a>) -> Self {
         Self { lengths, tables }
     }
@@ -135,10 +135,10 @@ impl<'a> Couplers<'a> {
         is_near_stretched(reach_sq(left, right), tips_sq)
     }
 
-    /// The shape at a squared distance of the crank tips, in units of four squared steps of the bars. `None` if the
-    /// loop does not close. Also `None` near the distances at which the loop just closes, and near coinciding crank
-    /// tips, where the tables have no value; the type-2 margin is then below a tenth, the smallest limit that a robot
-    /// may have.
+    /// Returns the shape at a squared distance of the crank tips, in units of four squared steps of the bars; `None` if
+    /// the loop does not close. Also returns `None` near the distances at which the loop just closes, and near
+    /// coinciding crank tips, where the tables have no value; the type-2 margin is then below a tenth, the smallest
+    /// limit that a robot may have.
     #[inline(always)]
     pub fn shape_at(&self, tips_sq: u32) -> Option<TriangleShape> {
         let Self { lengths, tables } = self;
@@ -221,8 +221,8 @@ pub fn skew_table(left: i16, right: i16) -> Table {
     })
 }
 
-/// The rise, `sqrt((R - s)(s - N)) / s`, in Q10, rounded to nearest if `rounding` is 1 and down if it is 0; 0 unless
-/// `s` is between `N` and `R`.
+/// Computes the rise, `sqrt((R - s)(s - N)) / s`, in Q10, rounded to nearest if `rounding` is 1 and down if it is 0;
+/// returns 0 unless `s` is between `N` and `R`.
 fn rise_q10(reach_sq: u32, folded_sq: u32, tips_sq: u64, rounding: u128) -> i16 {
     let (reach_sq, folded_sq) = (u64::from(reach_sq), u64::from(folded_sq));
     if tips_sq >= reach_sq || tips_sq <= folded_sq {

@@ -1,6 +1,6 @@
 //! A smooth function of a squared length, read from a table in flash.
 //!
-//! To compute a root and a quotient would take 2 800 cycles in every frame. The functions that the five-bar needs
+//! Computing a root and a quotient would take 2 800 cycles in every frame. The functions that the five-bar needs
 //! depend on a single squared length, so a table is enough. It has sixteen steps per octave of the argument (a range
 //! from a number to its double), and the function is interpolated linearly within a step. A square root is then
 //! accurate to about one part in ten thousand and a reciprocal to about one in a thousand, near zero as well as far
@@ -29,12 +29,12 @@ pub struct Curve<'a> {
 }
 
 impl<'a> Curve<'a> {
-    /// The function in `table`, whose arguments go up to `max_argument`.
+    /// Creates the function in `table`, whose arguments go up to `max_argument`.
     pub const fn new(table: Flash<'a, Table>, max_argument: u32) -> Self {
         Self::with_leading_zeros(table, max_argument.leading_zeros() as u16)
     }
 
-    /// The function in `table`, whose largest argument has this many leading zeros.
+    /// Creates the function in `table`, whose largest argument has this many leading zeros.
     pub const fn with_leading_zeros(table: Flash<'a, Table>, zeros: u16) -> Self {
         Self {
             table,
@@ -42,13 +42,13 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// The value of a function that never rises, rounded up; `None` below the table's first octave. The first octave
+    /// Returns the value of a function that never rises, rounded up; `None` below the table's first octave, which
     /// begins at 1/1024 of the start of the largest argument's octave.
     pub fn at_rounded_up(&self, argument: u32) -> Option<i16> {
         self.interpolate(argument, 0)
     }
 
-    /// The value of any function, rounded to nearest; `None` below the table's first octave, as for
+    /// Returns the value of any function, rounded to nearest; `None` below the table's first octave, as for
     /// [`Curve::at_rounded_up`].
     pub fn at(&self, argument: u32) -> Option<i16> {
         self.interpolate(argument, 0x8000)
@@ -80,8 +80,8 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// The argument of the table's entry at `index` if the largest argument is `max_argument`. It is rounded down; only a
-/// `max_argument` below 16384 needs the rounding.
+/// Returns the argument of the table's entry at `index` if the largest argument is `max_argument`. The result is
+/// rounded down; only a `max_argument` below 16384 needs the rounding.
 pub const fn argument_at(max_argument: u32, index: usize) -> u64 {
     let (first_zeros, position_zeros) = (
         first_octave_zeros(max_argument) as usize,
@@ -93,7 +93,7 @@ pub const fn argument_at(max_argument: u32, index: usize) -> u64 {
     ((STEPS_PER_OCTAVE + index % STEPS_PER_OCTAVE) as u64) << (position_zeros - first_zeros) >> 4
 }
 
-/// The number of leading zeros of an argument in the first octave.
+/// Returns the number of leading zeros of an argument in the first octave.
 const fn first_octave_zeros(max_argument: u32) -> u8 {
     (max_argument.leading_zeros() + OCTAVE_COUNT) as u8
 }
@@ -146,7 +146,7 @@ mod tests {
         }
 
         #[test]
-        fn an_entry_is_met_exactly_at_its_argument(
+        fn an_entry_is_read_exactly_at_its_argument(
             // For a smaller `max_argument`, the sixteen steps of the first octaves are not all whole numbers.
             max_argument in 1u32 << 14..,
             index in 0..ENTRY_COUNT,
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_never_fall_from_entry_to_entry_even_for_a_small_largest_argument() {
+    fn arguments_never_decrease_from_entry_to_entry_even_for_a_small_largest_argument() {
         for max_argument in [0, 1, 100, 1023, 1024] {
             for index in 1..ENTRY_COUNT {
                 let (previous_argument, current_argument) = (

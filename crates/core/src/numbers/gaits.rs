@@ -18,8 +18,8 @@ pub const MAX_WAVES: usize = 255;
 /// The samples of a waveform over one cycle, in 1/65536 turn at a gain of 1.
 pub type Wave = [i16; SAMPLES_PER_WAVE];
 
-/// A gait's name, read byte by byte from flash: one or more words with a blank in between. It is also the gait's
-/// console command.
+/// A gait's name, which is also its console command, read byte by byte from flash: one or more words with a blank in
+/// between.
 #[derive(Clone, Copy)]
 pub struct Name<'a> {
     names: Flash<'a, [u8]>,
@@ -30,7 +30,7 @@ pub struct Name<'a> {
 }
 
 impl<'a> Name<'a> {
-    /// The name of `length` bytes that begins at index `start` of the names of a robot's gaits.
+    /// Returns the name of `length` bytes that begins at index `start` of the names of a robot's gaits.
     pub fn of(start: u16, length: u16, names: Flash<'a, [u8]>) -> Self {
         Self {
             names,
@@ -114,7 +114,7 @@ impl Step {
     /// Waits without motion until a contact closes; the preceding record of the kind [`Step::UNTIL`] gives the contact.
     pub const WAIT: u8 = 3;
 
-    /// A record in front of a step. It gives a contact that ends the step before its count is over.
+    /// A record in front of a step, with a contact that ends the step even before its count is over.
     pub const UNTIL: u8 = 4;
 
     /// The `count` of a step that only its contact ends.
@@ -142,7 +142,7 @@ impl Input {
         Self(pin | Self::NOSE)
     }
 
-    /// The input of a record of the kind [`Step::UNTIL`].
+    /// Returns the input of a record of the kind [`Step::UNTIL`].
     pub const fn of_step(step: &Step) -> Self {
         Self(step.gait)
     }
@@ -194,8 +194,8 @@ impl GaitId {
 }
 
 impl Gait {
-    /// A routine without a name. `first_step` is the index of its first step among those of all routines; the address
-    /// of the step replaces it in a section.
+    /// Creates a routine without a name. `first_step` is the index of its first step among those of all routines; in a
+    /// section, the address of the step replaces the index.
     #[cfg(any(test, feature = "host"))]
     pub const fn routine(first_step: u16, steps: u16, rounds: u16) -> Self {
         let mut routine = Self::STILL;

@@ -80,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_version_is_the_packages() {
+    fn the_version_equals_that_of_the_package() {
         let [major, minor, patch] = Mark::THIS_FIRMWARE.version;
         let version = format!("{major}.{minor}.{patch}");
         assert_eq!(version, env!("CARGO_PKG_VERSION"));
@@ -90,14 +90,14 @@ mod tests {
     fn a_flipped_bit_gives_another_mark_or_none() {
         let mut flash = [0xff; 128];
         flash[ADDRESS..ADDRESS + LENGTH].copy_from_slice(&Mark::THIS_FIRMWARE.bytes());
-        for offset in ADDRESS..ADDRESS + LENGTH {
+        for address in ADDRESS..ADDRESS + LENGTH {
             for bit in 0..8 {
                 let mut flash = flash;
-                flash[offset] ^= 1 << bit;
+                flash[address] ^= 1 << bit;
                 assert_ne!(
                     Mark::find(&flash),
                     Some(Mark::THIS_FIRMWARE),
-                    "bit {bit} of {offset}"
+                    "bit {bit} at {address}"
                 );
             }
         }

@@ -19,7 +19,7 @@ impl Pose {
     /// All servos at their neutral angle: the robot stands.
     pub const NEUTRAL: Self = Self([Sweep(0); 4]);
 
-    /// The pose with these chassis angles, given the servos' neutral angles; it may be beyond the travel.
+    /// Returns the pose with these chassis angles, given the servos' neutral angles; the pose may be beyond the travel.
     pub fn from_angles(angles: &[Angle; 4], neutral_angles: &[Angle; 4]) -> Self {
         let mut pose = Self::NEUTRAL;
         for (sweep, (angle, neutral)) in pose.0.iter_mut().zip(angles.iter().zip(neutral_angles)) {
@@ -28,7 +28,7 @@ impl Pose {
         pose
     }
 
-    /// The chassis angles of the servos, given their neutral angles.
+    /// Returns the chassis angles of the servos, given their neutral angles.
     pub fn angles(&self, neutral_angles: &[Angle; 4]) -> [Angle; 4] {
         let mut angles = *neutral_angles;
         for (angle, sweep) in angles.iter_mut().zip(&self.0) {
@@ -37,7 +37,7 @@ impl Pose {
         angles
     }
 
-    /// The first servo whose travel does not include its sweep; `None` if every travel does.
+    /// Returns the first servo whose travel does not include its sweep; `None` if every travel does.
     pub fn first_servo_beyond_travel(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
         for (index, servo) in calibration.iter().enumerate() {
             if !servo.reaches(self.0[index]) {
@@ -56,7 +56,7 @@ impl Pose {
         pulses
     }
 
-    /// The largest turn of any servo between this pose and `other`, in 1/65536 turn.
+    /// Returns the largest turn of any servo between this pose and `other`, in 1/65536 turn.
     pub fn largest_turn_to(&self, other: &Self) -> u16 {
         let mut max_turn = 0;
         for (from, to) in self.0.iter().zip(&other.0) {
@@ -82,7 +82,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_pose_within_the_travel_comes_back_from_its_angles((robot, pose) in any_robot_and_pose()) {
+        fn a_pose_within_the_travel_is_recovered_from_its_angles((robot, pose) in any_robot_and_pose()) {
             let angles = pose.angles(&robot.neutral_angles());
             prop_assert_eq!(Pose::from_angles(&angles, &robot.neutral_angles()), pose);
             prop_assert_eq!(pose.first_servo_beyond_travel(&robot.calibration()), None);

@@ -47,7 +47,7 @@ impl<'a> Robot<'a> {
         is_present: false,
     };
 
-    /// The robot in `flash`, which has to be exactly a valid section; [`Robot::open`] checks that.
+    /// Returns the robot in `flash`, which has to be exactly a valid section; [`Robot::open`] checks that.
     #[inline(always)]
     pub(crate) const fn at(flash: Region<'a>) -> Self {
         Self {
@@ -56,8 +56,8 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The robot of a newly made section whose numbers are not checked yet, for the code that checks them. `None` if
-    /// the section's header, length or checksum is wrong.
+    /// Returns the robot of a newly made section whose numbers are not checked yet, for the code that checks them;
+    /// `None` if the section's header, length or checksum is wrong.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
         let length = section::check(flash).ok()?;
@@ -112,7 +112,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// The percentage of their own pace to which a low supply limits gaits.
+    /// The pace to which a low supply limits gaits, in percent of the pace in robot.toml.
     pub fn slow_pace(&self) -> u8 {
         self.read_number(offset_of!(Numbers, slow_pace))
     }

@@ -1,6 +1,6 @@
 //! The integer square root and the quotient of two integers, computed bit by bit.
 //!
-//! The length of a slider that is reported is a root; a voltage and the limits of a travel are quotients. The chip has
+//! The reported length of a slider is a root; a voltage and the limits of a travel are quotients. The chip has
 //! no instruction for either, and the compiler's 32-bit division takes a kilobyte of flash.
 
 use lizard_avr::mul_unsigned;
@@ -71,7 +71,7 @@ mod tests {
         }
 
         #[test]
-        fn a_quotient_is_the_exact_one_rounded_down_and_limited_to_sixteen_bits(
+        fn a_quotient_is_exact_except_for_rounding_down_and_the_limit_of_sixteen_bits(
             dividend: u32,
             divisor: u16,
         ) {

@@ -1,8 +1,8 @@
 //! The robot's section of flash: all data of robot.toml that the firmware needs.
 //!
 //! The firmware is one image for any robot. The numbers that differ from robot to robot are at a fixed address after
-//! it, and can be written without a compiler. That part of flash may hold anything: erased bytes, half an upload, a
-//! section of another version, a byte that has changed over the years. So nothing in it is used before
+//! the image, and can be written without a compiler. That part of flash may hold anything: erased bytes, half an
+//! upload, a section of another version, a byte that has changed over the years. So nothing in it is used before
 //! [`crate::numbers::robot::Robot::open`] has checked its header, length and CRC, and every index and count is checked
 //! where it is used.
 //!
@@ -68,7 +68,7 @@ lizard_avr::plain! {
         pub length: u16,
         /// The [`Checksum`] of all bytes of the section after this field.
         pub crc: u16,
-        /// The robot's name, filled up with zeros.
+        /// The robot's name, padded with zeros.
         pub name: [u8; MAX_NAME_BYTES],
         /// The hash that identifies the robot: the CRC-32 of everything except header and maps.
         pub hash: u32,
@@ -104,7 +104,7 @@ lizard_avr::plain! {
         pub parts: [PartRange; PART_COUNT],
         /// The Arduino number of the pin where the servos' rail is measured; 0 if it is not measured.
         pub rail_pin: u8,
-        /// The percentage of their own pace to which a low supply limits gaits, 10 to 100.
+        /// The pace to which a low supply limits gaits, in percent of the pace in robot.toml, 10 to 100.
         pub slow_pace: u8,
         /// The Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
@@ -162,7 +162,7 @@ lizard_avr::plain! {
 
 /// The reason why a section is not a usable robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// Starts at 1, since `None` has to be zero: see `Main::new`.
+// Discriminants start at 1, so that `Option::None` is all zeros: see `Main::new`.
 #[repr(u8)]
 pub enum SectionError {
     /// There is no section: its magic bytes are missing.

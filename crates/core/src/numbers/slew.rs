@@ -16,7 +16,7 @@ impl Slew {
     /// count.
     pub const MIN_PER_FRAME: u16 = 36;
 
-    /// The slew limit of `per_frame`, in 1/65536 turn per frame.
+    /// Creates a slew limit of `per_frame`, in 1/65536 turn per frame.
     ///
     /// # Panics
     /// If the limit is below [`Slew::MIN_PER_FRAME`].

@@ -52,7 +52,7 @@ impl Slider {
         square(self.stroke_min) <= length_sq && length_sq <= square(self.stroke_max)
     }
 
-    /// The difference of a length, in steps, from the nominal length, in hundredths of a millimetre.
+    /// Returns the difference of a length, in steps, from the nominal length, in hundredths of a millimetre.
     #[inline(always)]
     pub fn travel(&self, length: u16) -> i32 {
         self.scale

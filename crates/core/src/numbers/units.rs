@@ -81,7 +81,7 @@ lizard_avr::plain!(PulseWidth: u16);
 lizard_avr::plain! {
     /// The scale of a mechanism's lengths: a millimetre has 2^`bits` steps.
     ///
-    /// It depends on the robot's size, so that sixteen bits hold the bars of any robot.
+    /// The scale depends on the robot's size, so that sixteen bits hold the bars of any robot.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Scale {
         /// The binary logarithm of the number of steps in a millimetre, at most 14.
@@ -90,7 +90,7 @@ lizard_avr::plain! {
 }
 
 impl Angle {
-    /// The angle of `centideg` hundredths of a degree, at most one turn in either direction; exact within 0.004 deg.
+    /// Converts hundredths of a degree, at most one turn in either direction, to an angle; exact within 0.004 deg.
     #[inline(never)]
     pub fn from_centideg(centideg: i32) -> Self {
         let magnitude = centideg.unsigned_abs() as u16;
@@ -110,26 +110,26 @@ impl Angle {
         })
     }
 
-    /// The angle in hundredths of a degree, 0..36000. It returns the exact argument of [`Angle::from_centideg`],
-    /// because the step of an angle is finer than a hundredth of a degree.
+    /// Returns the angle in hundredths of a degree, 0..36000: exactly the argument of [`Angle::from_centideg`], because
+    /// the step of an angle is finer than a hundredth of a degree.
     pub fn centideg(self) -> u16 {
         // The last step of a turn, 359.9945 deg, does not round to 360.
         ((mul_unsigned(self.0, CENTIDEG_PER_TURN as u16) + 0x8000) >> 16) as u16
     }
 
-    /// The angle after a sweep from this one.
+    /// Returns the angle after a sweep from this one.
     pub const fn swept(self, sweep: Sweep) -> Self {
         Self(self.0.wrapping_add(sweep.0 as u16))
     }
 
-    /// The sweep from this angle to another one, in the direction of the shorter turn.
+    /// Returns the sweep from this angle to another one, in the direction of the shorter turn.
     pub const fn sweep_to(self, other: Self) -> Sweep {
         Sweep(other.0.wrapping_sub(self.0) as i16)
     }
 }
 
 impl Sine {
-    /// The margin in thousandths, rounded to nearest.
+    /// Returns the margin in thousandths, rounded to nearest.
     pub fn thousandths(self) -> i16 {
         ((mul(self.0, 1000) + (1 << 14)) >> 15) as i16
     }
@@ -150,12 +150,12 @@ impl Scale {
     }
 }
 
-/// The highest sixteen bits of a phase: the argument of the waveforms, in 1/65536 cycle.
+/// Returns the highest sixteen bits of a phase: the argument of the waveforms, in 1/65536 cycle.
 pub const fn phase16(phase: u32) -> u16 {
     (phase >> 8) as u16
 }
 
-/// A phase in thousandths of a cycle, 0..=999.
+/// Converts a phase to thousandths of a cycle, 0..=999.
 pub fn thousandths_from_phase(phase: u32) -> u16 {
     (mul_unsigned(phase16(phase), 1000) >> 16) as u16
 }
@@ -164,7 +164,7 @@ pub fn thousandths_from_phase(phase: u32) -> u16 {
 mod tests {
     use super::*;
 
-    /// The smaller angle between two directions, deg.
+    /// Returns the smaller angle between two directions, deg.
     fn angle_between(a: f64, b: f64) -> f64 {
         let difference = (a - b).rem_euclid(360.0);
         difference.min(360.0 - difference)

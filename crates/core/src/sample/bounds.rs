@@ -1,14 +1,14 @@
-//! The bounds of [`crate::guard::bounds`] for the bars of a sample.
+//! The bounds of [`crate::guard::bounds`] for the five-bars of a sample.
 
 pub use crate::guard::bounds::*;
 
 use super::SampleFiveBar;
 
 impl From<&SampleFiveBar> for RoundedBars {
-    fn from(bars: &SampleFiveBar) -> Self {
+    fn from(five_bar: &SampleFiveBar) -> Self {
         Self {
-            scale: bars.scale,
-            couplers: [bars.couplers.left, bars.couplers.right],
+            scale: five_bar.scale,
+            couplers: [five_bar.couplers.left, five_bar.couplers.right],
         }
     }
 }

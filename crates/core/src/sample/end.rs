@@ -46,7 +46,7 @@ impl SampleCouplers {
         }
     }
 
-    /// The couplers as the guard uses them.
+    /// Returns the couplers as the guard uses them.
     pub fn couplers(&self) -> Couplers<'_> {
         Couplers::new(CouplerLengths::new(self.left, self.right), self.tables())
     }
@@ -62,12 +62,16 @@ impl SampleCouplers {
 }
 
 impl SampleFiveBar {
-    /// Converts bars from mm to the finest steps in which each coupler and the sum of the other bars are below
+    /// Converts a five-bar from mm to the finest steps in which each coupler and the sum of the other bars are below
     /// [`bars::MAX_LENGTH_STEPS`]. Returns `None` if even steps of 1 mm are too fine, or if a coupler is then shorter
     /// than [`bars::MIN_COUPLER_STEPS`].
-    pub fn new(bars: &kinematics::FiveBar) -> Option<Self> {
-        let [base, left, right] = [bars.base, bars.left_crank_length, bars.right_crank_length];
-        let couplers = [bars.left_coupler_length, bars.right_coupler_length];
+    pub fn new(five_bar: &kinematics::FiveBar) -> Option<Self> {
+        let [base, left, right] = [
+            five_bar.base,
+            five_bar.left_crank_length,
+            five_bar.right_crank_length,
+        ];
+        let couplers = [five_bar.left_coupler_length, five_bar.right_coupler_length];
         let longest_mm = couplers.iter().copied().fold(base + left + right, f64::max);
         let scale = (0..=14)
             .rev()
@@ -84,7 +88,7 @@ impl SampleFiveBar {
         })
     }
 
-    /// The five-bar's lengths as a section stores them.
+    /// Returns the five-bar's lengths as a section stores them.
     pub(super) fn content(&self) -> section::FiveBarLengths {
         let [base, left, right] = self.bars;
         section::FiveBarLengths {
@@ -96,7 +100,7 @@ impl SampleFiveBar {
         }
     }
 
-    /// The five-bar as the guard uses it.
+    /// Returns the five-bar as the guard uses it.
     pub fn five_bar(&self) -> FiveBar<'_> {
         let SampleCouplers { left, right, .. } = self.couplers;
         let bars = bars::Bars::new(self.bars, [left, right], self.scale);
@@ -104,7 +108,7 @@ impl SampleFiveBar {
     }
 }
 
-/// The number of steps in a millimetre.
+/// Returns the number of steps in a millimetre.
 pub fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }

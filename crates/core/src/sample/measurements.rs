@@ -94,7 +94,7 @@ impl Measurements {
         }
     }
 
-    /// Random robots without symmetry.
+    /// Yields random robots without symmetry.
     pub fn random() -> impl Strategy<Value = Self> {
         let any_end = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
         let any_side = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
@@ -163,7 +163,7 @@ impl Measurements {
 }
 
 impl Servo {
-    /// The calibration in the core's units, its travel rounded inwards.
+    /// Converts the servo to a calibration in the core's units, its travel rounded inwards.
     pub fn calibration(&self) -> Calibration {
         let sweep_at = |us: f64| (us - self.neutral_us) / self.us_per_degree * STEPS_PER_DEGREE;
         let limits = [sweep_at(self.min_us), sweep_at(self.max_us)];
@@ -180,8 +180,8 @@ impl Servo {
 /// of its sides (chassis, rear arm, rear half of the slider, front half, front arm), mm.
 fn lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
     let mut links = [0.0; 20];
-    for (index, bars) in [head, tail, left, right].iter().enumerate() {
-        links[5 * index..][..5].copy_from_slice(bars);
+    for (index, part_links) in [head, tail, left, right].iter().enumerate() {
+        links[5 * index..][..5].copy_from_slice(part_links);
     }
     Lizard {
         links: Links::from(links),

@@ -10,7 +10,7 @@ use crate::motion::Motion;
 use crate::sample::Sample;
 use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 
-/// A robot whose program starts at this tick, with these bytes already received.
+/// Starts a robot's program at this tick, with these bytes already received.
 fn start_robot(ticks: u8, received: &str) -> RunningRobot {
     let mut board = VirtualBoard::default().at_tick(ticks);
     board.send(received.as_bytes());
@@ -22,7 +22,7 @@ fn run_step(robot: &mut RunningRobot) -> bool {
     robot.main.step(&mut robot.board) == Step::Worked
 }
 
-/// A robot that stands and has received a line of garbled bytes, as from a sender at another rate.
+/// Returns a robot that stands and has received a line of garbled bytes, as from a sender at another rate.
 fn robot_after_garbled_line() -> RunningRobot {
     let mut robot = RunningRobot::power_on(*Sample::odd());
     robot.run_frames(10);
@@ -63,7 +63,7 @@ fn a_tick_comes_before_output_and_output_before_input() {
 }
 
 #[test]
-fn nothing_is_written_without_room_for_the_longest_line_but_frames_go_on() {
+fn nothing_is_written_without_room_for_the_longest_line_but_frames_continue() {
     let mut robot = start_robot(0, "speed 50\r");
     robot.board.transmitter = Transmitter::new(16_000, 255);
     let queued_bytes = 255 - u64::from(MAX_OUTPUT_LINE_BYTES) + 1;
@@ -148,7 +148,7 @@ fn submitted_pulses_are_those_of_the_motion_and_counters_reach_status() {
     assert!(status.contains(" frames=30 late=0 rx_lost=34 "), "{status}");
 }
 
-/// The numbers of frames between the changes of the LED.
+/// Returns the numbers of frames between the changes of the LED.
 fn frames_between_changes(led_states: &[bool]) -> Vec<usize> {
     let changes: Vec<usize> = (1..led_states.len())
         .filter(|n| led_states[*n] != led_states[n - 1])
@@ -157,7 +157,7 @@ fn frames_between_changes(led_states: &[bool]) -> Vec<usize> {
 }
 
 #[test]
-fn the_led_beats_slowly_and_flashes_while_the_guard_holds_the_robot() {
+fn the_led_shows_the_heartbeat_and_flashes_while_the_guard_holds_the_robot() {
     let mut robot = start_robot(0, "stray\r");
     let (mut led_states, mut first_held_frame) = (Vec::new(), 0);
     for frame in 1..400 {
@@ -169,11 +169,11 @@ fn the_led_beats_slowly_and_flashes_while_the_guard_holds_the_robot() {
     }
     assert_eq!(robot.motion().activity(), Activity::Stop);
     assert!(first_held_frame > 40);
-    let (beat_states, flash_states) = led_states.split_at(first_held_frame - 1);
+    let (heartbeat_states, flash_states) = led_states.split_at(first_held_frame - 1);
     // Lit for the first 31 frames from power-on, then dark for 32, and so on.
-    assert!(beat_states[..31].iter().all(|led| *led) && !beat_states[31]);
+    assert!(heartbeat_states[..31].iter().all(|led| *led) && !heartbeat_states[31]);
     assert!(
-        frames_between_changes(beat_states)
+        frames_between_changes(heartbeat_states)
             .iter()
             .all(|frames| *frames == 32)
     );

@@ -12,14 +12,14 @@ pub struct Converter {
     has_rail: bool,
     /// The latest measured values.
     last_reading: Reading,
-    /// The number of the frame within a round of measurements.
+    /// The index of the frame within a round of measurements.
     frame_in_round: u8,
     /// True once every voltage has been measured.
     is_complete: bool,
 }
 
 impl Converter {
-    /// A converter whose supplies have this reading; `has_rail` is true if the servos' rail is measured too.
+    /// Creates a converter whose supplies have this reading; `has_rail` is true if the servos' rail is measured too.
     pub fn new(true_reading: Reading, has_rail: bool) -> Self {
         Self {
             true_reading,
@@ -47,8 +47,8 @@ impl Converter {
         Self::new(self.true_reading, self.has_rail)
     }
 
-    /// Advances by a frame. Returns the latest value of each voltage, or the default until every voltage has been
-    /// measured once.
+    /// Advances by a frame. Returns the latest value of each voltage, or the default reading until every voltage has
+    /// been measured once.
     pub(super) fn advance_frame(&mut self) -> Reading {
         match self.frame_in_round {
             1 => {

@@ -18,13 +18,13 @@ pub struct Eeprom {
     pub is_timed: bool,
     /// True if the EEPROM is worn out, so that writes change nothing.
     pub is_worn: bool,
-    /// Every write of a byte: address, old value, new value.
+    /// Every write of a byte so far: address, old value, new value.
     pub log: Vec<(u16, u8, u8)>,
     /// The part of `write_delay` that has not passed yet.
     remaining_delay: Cell<u16>,
     /// True if the last poll found the EEPROM busy; only set if `is_timed`.
     was_polled_busy: Cell<bool>,
-    /// The address of the byte that is being written.
+    /// The address of the byte that is being written, if any.
     address_in_write: Cell<Option<u16>>,
 }
 
@@ -45,12 +45,12 @@ impl Hash for Eeprom {
 }
 
 impl Eeprom {
-    /// An erased EEPROM, as it comes from the factory.
+    /// Creates an erased EEPROM, as delivered by the factory.
     pub fn blank() -> Self {
         Self::with_bytes([ERASED; MEMORY_BYTES])
     }
 
-    /// An EEPROM with these bytes.
+    /// Creates an EEPROM with these bytes.
     pub fn with_bytes(bytes: [u8; MEMORY_BYTES]) -> Self {
         Self {
             bytes: Arc::new(bytes),
@@ -74,7 +74,7 @@ impl Eeprom {
         Arc::make_mut(&mut self.bytes)
     }
 
-    /// The address of the byte that is being written.
+    /// The address of the byte that is being written, if any.
     pub fn address_in_write(&self) -> Option<u16> {
         self.address_in_write.get()
     }

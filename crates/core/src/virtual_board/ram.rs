@@ -39,15 +39,14 @@ impl Cells for Ram {
 }
 
 impl Ram {
-    /// The state that the program would find if it started now; changes nothing. `reported_cause` is the cause that the
-    /// chip reports, or `None` if a boot loader hides it.
+    /// Returns the state that the program would find if it started now, without changing the cells. `reported_cause` is
+    /// the cause that the chip reports, or `None` if a boot loader hides it.
     pub fn peek_restart(&self, reported_cause: Option<Cause>) -> Restart {
         retained_ram::begin(&self.clone(), reported_cause)
     }
 
-    /// Returns the cause of the reset and the state from before it, and marks the program as running, as the
-    /// firmware does at its start. `reported_cause` is the cause that the chip reports, or `None` if a boot loader hides
-    /// it.
+    /// Returns the cause of the reset and the state from before it, and marks the program as running, as the firmware
+    /// does at its start. `reported_cause` is the cause that the chip reports, or `None` if a boot loader hides it.
     pub fn begin(&self, reported_cause: Option<Cause>) -> Restart {
         retained_ram::begin(self, reported_cause)
     }

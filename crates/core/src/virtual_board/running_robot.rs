@@ -25,12 +25,12 @@ pub struct RunningRobot {
 }
 
 impl RunningRobot {
-    /// A robot at power-on, with good supplies and nothing saved.
+    /// Powers on a robot with good supplies and nothing saved.
     pub fn power_on(robot: Robot<'static>) -> Self {
         Self::with_memory(robot, Eeprom::blank(), Restart::default())
     }
 
-    /// A robot with this memory, after a restart with this cause and state.
+    /// Starts a robot with this memory, after a restart with this cause and state.
     pub fn with_memory(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
         // A rail voltage well above its thresholds.
@@ -43,7 +43,7 @@ impl RunningRobot {
         Self::with_flash(robot.section(), board)
     }
 
-    /// The firmware on this board, with the bytes `flash` in place of a robot's section.
+    /// Starts the firmware on this board, with the bytes `flash` in place of a robot's section.
     pub fn with_flash(flash: Region<'static>, mut board: VirtualBoard) -> Self {
         let mut main = Main::new();
         main.begin(flash, &mut board);
@@ -191,7 +191,7 @@ impl RunningRobot {
         assert!(is_refused, "{line}: {answer}, not {reason}");
     }
 
-    /// Asks for the status and returns the value of a key in it.
+    /// Requests the status and returns the value of a key in it.
     ///
     /// # Panics
     /// If the status has no such key.

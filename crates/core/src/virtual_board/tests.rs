@@ -7,7 +7,7 @@ use crate::memory::record::{ERASED, Memory};
 use crate::sample::Sample;
 use crate::step::{Main, Step};
 
-/// A robot that stands.
+/// Returns a robot that stands.
 fn standing_robot() -> RunningRobot {
     let mut robot = RunningRobot::power_on(*Sample::odd());
     robot.run_frames(30);
@@ -17,7 +17,7 @@ fn standing_robot() -> RunningRobot {
 const NO_PULSES: Pulses = Pulses([PulseWidth(0); 4]);
 
 #[test]
-fn a_frame_is_played_once_handed_over_and_repeats_while_main_is_late() {
+fn a_frame_is_played_after_it_is_taken_over_and_repeats_while_main_is_late() {
     let mut board = VirtualBoard::default();
     board.connect([9, 10, 5, 6], None);
     let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(PulseWidth));
@@ -71,7 +71,7 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() 
         frames,
         "the main loop does not continue"
     );
-    assert!(hung_robot.stall(1), "the reset comes");
+    assert!(hung_robot.stall(1), "the watchdog resets the processor");
     assert!(!hung_robot.board.are_pulses_ended());
     assert_eq!(hung_robot.board.last_restart().cause, Cause::Watchdog);
     assert_eq!(hung_robot.board.last_restart().reset_count, 1);
@@ -125,9 +125,9 @@ fn power_lost_during_a_write_changes_only_the_byte_that_is_being_written() {
         0x35,
         "the write had time to end"
     );
-    let is_other = |address: &usize| *address != 17;
+    let is_unwritten = |address: &usize| *address != 17;
     let is_erased = |address: usize| board.memory.bytes()[address] == ERASED;
-    assert!((0..1024).filter(is_other).all(is_erased));
+    assert!((0..1024).filter(is_unwritten).all(is_erased));
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn no_reading_is_given_before_every_voltage_has_been_measured() {
 }
 
 #[test]
-fn bytes_beyond_what_the_receiver_holds_are_lost_and_counted() {
+fn bytes_beyond_the_receivers_capacity_are_lost_and_counted() {
     let mut board = VirtualBoard::default();
     board.send(&[b'x'; RECEIVE_CAPACITY + 5]);
     assert_eq!(

@@ -12,13 +12,13 @@ const CYCLES_PER_MS: u64 = 16_000;
 /// The transmitter of the serial line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Transmitter {
-    /// The text that was written and is not read yet.
+    /// The text that has been written and not been read yet.
     pub text: String,
     /// True while nobody reads the line, so that nothing more is sent.
     pub is_held: bool,
     /// CPU cycles per byte; 0 for a line that sends at once.
     cycles_per_byte: u64,
-    /// Bytes that the transmitter accepts before a writer has to wait.
+    /// Number of bytes that the transmitter accepts before a writer has to wait.
     capacity: u64,
     /// The current CPU cycle.
     current_cycle: u64,
@@ -42,7 +42,7 @@ impl Hash for Transmitter {
 }
 
 impl Transmitter {
-    /// A line that takes `cycles_per_byte` cycles for a byte, with room for `capacity` bytes.
+    /// Creates a line that takes `cycles_per_byte` cycles for a byte, with room for `capacity` bytes.
     pub const fn new(cycles_per_byte: u64, capacity: u64) -> Self {
         Self {
             text: String::new(),
@@ -74,7 +74,7 @@ impl Transmitter {
         self.idle_from_cycle = self.current_cycle + bytes * self.cycles_per_byte;
     }
 
-    /// Bytes that the transmitter accepts without waiting, at most 255; none while it is held.
+    /// Number of bytes that the transmitter accepts without waiting, at most 255; 0 while it is held.
     pub fn room(&self) -> u8 {
         if self.is_held {
             return 0;

@@ -36,7 +36,7 @@ impl Controller {
         self.contact.input
     }
 
-    /// The watch over supply, line, pulses and stack.
+    /// The monitor of the supply, the serial line, the pulses and the stack.
     pub const fn safety(&self) -> &Safety {
         &self.safety
     }

@@ -1,7 +1,7 @@
 //! The running routine: a sequence of steps from robot.toml that the robot carries out by itself.
 //!
 //! A step is a gait for some cycles, a gait for some time, a rest, or a wait; a contact may end it earlier.
-//! Every stop and every other motion ends the routine; only an order or `boot` begins one.
+//! Every stop and every other motion ends the routine; only an order or `boot` starts one.
 
 use super::Controller;
 use crate::control::contact::Contact;
@@ -66,7 +66,7 @@ impl Controller {
             self.routine = Routine::NONE;
             return;
         }
-        let is_over = match self.routine.frames_left {
+        let is_step_over = match self.routine.frames_left {
             0 => self.motion.has_come_to_standstill(),
             Step::ENDLESS => false,
             _ => {
@@ -74,7 +74,7 @@ impl Controller {
                 self.routine.frames_left == 0
             }
         };
-        if self.contact.add_level(is_closed) || is_over {
+        if self.contact.add_level(is_closed) || is_step_over {
             self.begin_next_step();
         }
     }

@@ -7,7 +7,7 @@ fn odd_supplies() -> Supplies {
     Sample::odd().supplies()
 }
 
-/// The state after power-on, with `boot` cancelled.
+/// Returns the state after power-on, with `boot` cancelled.
 fn safety_without_boot() -> Safety {
     let mut safety = Safety::default();
     safety.note_byte();
@@ -19,7 +19,7 @@ fn check_still_frame(safety: &mut Safety, health: &Health) -> Reaction {
     safety.check_frame(health, &odd_supplies(), State::Still, 0)
 }
 
-/// The health of a board with this supply voltage of the chip, and 6 V at the servos' rail.
+/// Returns the health of a board with this supply voltage of the chip, and 6 V at the servos' rail.
 fn health_at(volts: f64) -> Health {
     Health {
         supply: Reading {
@@ -141,7 +141,7 @@ fn a_gait_ends_once_no_command_has_come_for_the_time_of_deadman_and_no_sooner() 
 }
 
 #[test]
-fn without_deadman_or_gait_silence_is_no_fault() {
+fn without_deadman_or_gait_silence_is_not_a_fault() {
     let mut safety = safety_without_boot();
     let supplies = odd_supplies();
     for _ in 0..5000 {
@@ -157,7 +157,7 @@ fn without_deadman_or_gait_silence_is_no_fault() {
 }
 
 #[test]
-fn a_gait_that_boot_begins_ends_only_after_the_time_of_deadman() {
+fn a_gait_that_boot_starts_ends_only_after_the_time_of_deadman() {
     let mut safety = Safety::default();
     let mut state = State::Still;
     let mut boot_frame = 0;
@@ -252,7 +252,7 @@ fn of_two_reactions_at_once_the_stronger_one_counts() {
 }
 
 #[test]
-fn notices_come_once_each_and_in_a_fixed_order() {
+fn each_notice_is_given_once_and_in_a_fixed_order() {
     let mut safety = safety_without_boot();
     for notice in [
         Notice::Boot,

@@ -47,7 +47,7 @@ fn response_text(response: Response, state: State) -> String {
     }
 }
 
-/// The rows of an event in the table of events: one for each set of supply levels with equal responses.
+/// Returns the rows of an event in the table of events: one for each set of supply levels with equal responses.
 fn rows_of(event: Event) -> Vec<String> {
     let cells_of = |supply| {
         let text_of = |state| response_text(response(event, supply, state), state);
@@ -145,7 +145,7 @@ fn only_stand_and_boot_give_pulses_to_a_resting_robot() {
 }
 
 #[test]
-fn a_falling_supply_never_allows_what_it_refused_before() {
+fn a_falling_supply_never_allows_a_command_that_a_higher_supply_refuses() {
     for event in [Event::Stand, Event::Move, Event::Save, Event::Boot] {
         for state in State::ALL {
             let is_obeyed = |(supply, _)| response(event, supply, state) == Response::Obey;

@@ -27,7 +27,7 @@ const SUPPLIES_WITH_RAIL: Supplies = Supplies {
     ..SUPPLIES
 };
 
-/// The converter's reading if the board has `volts` and the rail has `rail_volts`.
+/// Returns the converter's reading if the board has `volts` and the rail has `rail_volts`.
 fn reading_at(volts: f64, rail_volts: f64) -> Reading {
     Reading {
         reference: (1.1 / volts * 1024.0) as u16,
@@ -89,7 +89,7 @@ fn every_voltage_is_rounded_down_to_hundredths_of_a_volt() {
 
 proptest! {
     #[test]
-    fn comparing_a_voltage_agrees_with_floating_point(reference in 100u16..1023, mv in 0u16..9000) {
+    fn the_comparison_of_a_voltage_agrees_with_floating_point(reference in 100u16..1023, mv in 0u16..9000) {
         let voltage = Voltage::of_board(Reading { reference, rail: 0 }, &SUPPLIES);
         let exact = 1024.0 * 1100.0 / f64::from(reference);
         prop_assert_eq!(voltage.is_below(mv), exact < f64::from(mv));

@@ -141,17 +141,17 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
                 "{travel:?}"
             );
         }
-        let reach = Sample::odd().content.needed_travel[servo];
+        let needed_travel = Sample::odd().content.needed_travel[servo];
         for (excess, is_within) in [(0, true), (1, false)] {
             assert_eq!(
                 is_accepted_with_change(
-                    &|calibration| calibration.travel_min.0 = reach.min.0 + excess
+                    &|calibration| calibration.travel_min.0 = needed_travel.min.0 + excess
                 ),
                 is_within
             );
             assert_eq!(
                 is_accepted_with_change(
-                    &|calibration| calibration.travel_max.0 = reach.max.0 - excess
+                    &|calibration| calibration.travel_max.0 = needed_travel.max.0 - excess
                 ),
                 is_within
             );

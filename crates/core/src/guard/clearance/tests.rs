@@ -15,7 +15,7 @@ use crate::numbers::units::Sweep;
 use crate::sample::bounds::{self, MAX_DIRECTION_ERROR, Q15_STEP};
 use crate::sample::{Measurements, Sample, sine, steps_per_mm};
 
-/// Random robots, each with several poses, since making a robot takes longer than testing it.
+/// Yields random robots, each with several poses, since making a robot takes longer than testing it.
 fn robots_with_poses() -> impl Strategy<Value = (Sample, [Pose; 8])> {
     Sample::random().prop_flat_map(|robot| {
         let poses = [(); 8].map(|()| robot.any_pose());
@@ -58,8 +58,8 @@ impl Bounds {
     }
 }
 
-/// Decides in floating point if a pose is safe. Returns `Some(true)` if the pose keeps all limits by more than the
-/// errors, `Some(false)` if it breaks one by more than the errors, and `None` if the errors may change the decision.
+/// Decides in floating point if a pose is safe. Returns `Some(true)` if the pose satisfies all limits by more than the
+/// errors, `Some(false)` if it violates one by more than the errors, and `None` if the errors may change the decision.
 fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     let bounds = Bounds::of(robot, pose);
     let Some(solution) = robot.solve(pose) else {
@@ -110,16 +110,16 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
             0 | 1 => index,
             index => kinematics::End::of_servo((index - 2) % 4) as usize,
         };
-        let bars = [&solution.head, &solution.tail][end];
+        let five_bar_pose = [&solution.head, &solution.tail][end];
         let bound = &bounds.ends[end];
         let is_leg = index >= 6;
         if !is_leg && !bound.are_margins_known {
             continue;
         }
-        if index < 2 && bars.gap.x.abs() <= bound.gap_x {
+        if index < 2 && five_bar_pose.gap.x.abs() <= bound.gap_x {
             continue;
         }
-        let exact = if index < 2 && bars.gap.x < 0.0 {
+        let exact = if index < 2 && five_bar_pose.gap.x < 0.0 {
             -exact
         } else {
             exact
@@ -161,7 +161,7 @@ proptest! {
     }
 
     #[test]
-    fn the_decision_is_that_of_floating_point_unless_the_errors_may_change_it(
+    fn the_decision_equals_that_of_floating_point_unless_the_errors_may_change_it(
         (robot, poses) in robots_with_poses(),
     ) {
         for pose in &poses {
@@ -224,7 +224,7 @@ fn measure_safe_robot() -> (Sample, Clearance) {
     (robot, clearance)
 }
 
-/// The ten margins with their limits, in the order in which they are checked.
+/// Returns the ten margins with their limits, in the order in which they are checked.
 fn margins_with_limits(limits: &Limits) -> [(Margin, Sine); 10] {
     use Servo::{A1, A2, A3, A4};
     [

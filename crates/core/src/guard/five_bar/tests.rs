@@ -7,8 +7,8 @@ use super::*;
 use crate::numbers::units::Angle;
 use crate::sample::{SampleFiveBar, bounds, degrees, sine};
 
-/// Random bars, mm, with couplers that are long enough for the other bars.
-fn any_bars() -> impl Strategy<Value = kinematics::FiveBar> {
+/// Yields random five-bars, in mm, whose couplers are long enough for the other bars.
+fn any_five_bar() -> impl Strategy<Value = kinematics::FiveBar> {
     let any_crank = || 1.0..100.0f64;
     let any_coupler = || 5.0..120.0f64;
     let unequal_bars = (
@@ -19,28 +19,28 @@ fn any_bars() -> impl Strategy<Value = kinematics::FiveBar> {
         any_crank(),
     )
         .prop_map(
-            |(base, crank_left, coupler_left, coupler_right, crank_right)| kinematics::FiveBar {
+            |(base, left_crank, left_coupler, right_coupler, right_crank)| kinematics::FiveBar {
                 base,
-                left_crank_length: crank_left,
-                left_coupler_length: coupler_left,
-                right_coupler_length: coupler_right,
-                right_crank_length: crank_right,
+                left_crank_length: left_crank,
+                left_coupler_length: left_coupler,
+                right_coupler_length: right_coupler,
+                right_crank_length: right_crank,
             },
         );
     (unequal_bars, 0u8..3)
-        .prop_map(|(bars, variant)| {
-            let coupler_right = match variant {
-                0 => bars.left_coupler_length,
-                1 => bars.left_coupler_length + bars.base / 500.0,
-                _ => bars.right_coupler_length,
+        .prop_map(|(five_bar, variant)| {
+            let right_coupler = match variant {
+                0 => five_bar.left_coupler_length,
+                1 => five_bar.left_coupler_length + five_bar.base / 500.0,
+                _ => five_bar.right_coupler_length,
             };
             kinematics::FiveBar {
-                right_coupler_length: coupler_right,
-                ..bars
+                right_coupler_length: right_coupler,
+                ..five_bar
             }
         })
-        .prop_filter("the couplers are long enough", |bars| {
-            SampleFiveBar::new(bars).is_some()
+        .prop_filter("the couplers are long enough", |five_bar| {
+            SampleFiveBar::new(five_bar).is_some()
         })
 }
 
@@ -54,16 +54,16 @@ proptest! {
 
     #[test]
     fn the_margins_of_any_bars_are_within_their_error_bounds(
-        bars in any_bars(),
+        five_bar in any_five_bar(),
         left: u16,
         right: u16,
     ) {
         let [left, right] = [left, right].map(Angle);
-        let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
+        let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
         let actual = margins_of(&sample, left, right);
         let angles = [left, right].map(degrees);
-        let bound = bounds::EndErrors::of(&bars, &sample, angles);
-        let Ok(pose) = bars.forward(angles[0], angles[1]) else {
+        let bound = bounds::EndErrors::of(&five_bar, &sample, angles);
+        let Ok(pose) = five_bar.forward(angles[0], angles[1]) else {
             // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
             prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
             return Ok(());
@@ -93,11 +93,12 @@ proptest! {
     }
 }
 
-/// The bars have short couplers at a small type-2 margin, where rounding a length by one step turns the couplers most.
-/// A search over random bars found them; their errors exceeded an earlier bound, which was a guess from trials.
+/// The five-bars have short couplers at a small type-2 margin, where rounding a length by one step turns the couplers
+/// most. A search over random bars found them; their errors exceeded an earlier bound, which had been guessed from
+/// trials.
 #[test]
 fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
-    for ([base, crank_left, coupler_left, coupler_right, crank_right], angles, known_error) in [
+    for ([base, left_crank, left_coupler, right_coupler, right_crank], angles, known_error) in [
         (
             [
                 85.13013589423028,
@@ -121,21 +122,23 @@ fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
             0.0089,
         ),
     ] {
-        let bars = kinematics::FiveBar {
+        let five_bar = kinematics::FiveBar {
             base,
-            left_crank_length: crank_left,
-            left_coupler_length: coupler_left,
-            right_coupler_length: coupler_right,
-            right_crank_length: crank_right,
+            left_crank_length: left_crank,
+            left_coupler_length: left_coupler,
+            right_coupler_length: right_coupler,
+            right_crank_length: right_crank,
         };
-        let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
+        let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
         let angles = angles.map(Angle);
         let actual = margins_of(&sample, angles[0], angles[1]);
         let angles = angles.map(degrees);
-        let bound = bounds::EndErrors::of(&bars, &sample, angles);
-        let pose = bars.forward(angles[0], angles[1]).expect("the loop closes");
+        let bound = bounds::EndErrors::of(&five_bar, &sample, angles);
+        let pose = five_bar
+            .forward(angles[0], angles[1])
+            .expect("the loop closes");
         let error = (sine(actual.type2).abs() - pose.type2).abs();
-        // The case still has the error for which it was chosen.
+        // The five-bar still has the error for which it was chosen.
         assert!(error > known_error && pose.type2 > 0.1, "{error}");
         assert!(
             error <= bound.type2 && bound.type2 < 2.5 * error,
@@ -148,18 +151,18 @@ fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
 fn rounding_does_not_bias_the_type_2_margin_where_few_bits_are_left() {
     // The crank tips are close and the couplers long, so the squared distance is small and its rounding relatively
     // large.
-    let bars = kinematics::FiveBar {
+    let five_bar = kinematics::FiveBar {
         base: 20.0,
         left_crank_length: 30.0,
         left_coupler_length: 126.0,
         right_coupler_length: 126.0,
         right_crank_length: 30.0,
     };
-    let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
+    let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
     let (mut error_sum, mut count) = (0.0, 0.0);
     for left in (13_000..18_000).step_by(7) {
         let [left, right] = [Angle(left), Angle(0x8000 - left)];
-        let pose = bars
+        let pose = five_bar
             .forward(degrees(left), degrees(right))
             .expect("the loop closes");
         let actual = sine(margins_of(&sample, left, right).type2);
@@ -174,14 +177,14 @@ fn rounding_does_not_bias_the_type_2_margin_where_few_bits_are_left() {
 
 #[test]
 fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
-    let bars = kinematics::FiveBar {
+    let five_bar = kinematics::FiveBar {
         base: 20.0,
         left_crank_length: 30.0,
         left_coupler_length: 40.0,
         right_coupler_length: 35.0,
         right_crank_length: 30.0,
     };
-    let sample = SampleFiveBar::new(&bars).expect("the bars fit the integers");
+    let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
     let margins_at = |left, right| {
         let [left, right] = [left, right].map(Angle::from_centideg);
         margins_of(&sample, left, right)

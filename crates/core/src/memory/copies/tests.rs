@@ -15,7 +15,7 @@ fn odd_robot() -> Sample {
     Sample::odd()
 }
 
-/// Settings that differ in everything for each `n`.
+/// Makes settings all of whose values depend on `n`, except `boot`.
 fn make_settings(robot: &Sample, n: i16) -> Settings {
     let mut settings = Settings::of(robot);
     for servo in Servo::ALL {
@@ -46,14 +46,14 @@ fn save_settings(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
     saved_settings
 }
 
-/// Loads the settings to use, and the state of the saved ones.
+/// Returns the settings to use, and the state of the saved ones.
 fn load_settings(robot: &Sample, eeprom: &Eeprom) -> (Settings, SavedState) {
     let mut settings = Settings::of(robot);
     let state = load(robot, eeprom, &mut settings);
     (settings, state)
 }
 
-/// The settings with save number 0, so that settings of different saves can be compared.
+/// Returns the settings with save number 0, so that settings of different saves can be compared.
 fn clear_save_number(settings: &Settings) -> Settings {
     let mut comparable_settings = *settings;
     comparable_settings.set_save_number(0);
@@ -303,13 +303,13 @@ fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
     while record_write.advance(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     let is_outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
-    let touched_addresses: Vec<u16> = eeprom
+    let addresses_outside: Vec<u16> = eeprom
         .log
         .iter()
         .map(|(address, ..)| *address)
         .filter(is_outside)
         .collect();
-    assert!(touched_addresses.is_empty());
+    assert!(addresses_outside.is_empty());
     assert_eq!(eeprom.bytes()[128], ERASED);
 }
 

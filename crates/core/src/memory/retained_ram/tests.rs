@@ -9,7 +9,7 @@ use super::*;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::{PulseWidth, Sweep};
 
-/// RAM that survives a reset; the reset may come after any number of stores.
+/// RAM that survives a reset; the reset may occur after any number of stores.
 struct Ram {
     bytes: RefCell<Vec<u8>>,
     /// The number of stores until the reset; later ones are lost.
@@ -27,7 +27,7 @@ impl Ram {
         }
     }
 
-    /// The RAM after the first `begin` since power-on.
+    /// Returns the RAM after the first `begin` since power-on.
     fn after_power_on() -> Self {
         let ram = Self::with_bytes(std::vec![0; CELL_COUNT]);
         let restart = begin(&ram, Some(Cause::Power));
@@ -35,14 +35,14 @@ impl Ram {
         ram
     }
 
-    /// A copy of the RAM that loses all stores after the first `stores`.
+    /// Returns a copy of the RAM that loses all stores after the first `stores`.
     fn with_reset_after(&self, stores: usize) -> Self {
         let ram = Self::with_bytes(self.bytes.borrow().clone());
         ram.stores_left.set(stores);
         ram
     }
 
-    /// The RAM as the next run of the program finds it.
+    /// Returns the RAM as the next run of the program finds it.
     fn copy_after_reset(&self) -> Self {
         Self::with_bytes(self.bytes.borrow().clone())
     }
@@ -108,7 +108,7 @@ fn a_stored_stance_survives_a_reset_but_not_a_loss_of_power() {
 fn a_reset_between_any_two_stores_leaves_the_old_stance_or_the_new_one() {
     let ram = Ram::after_power_on();
     store_stance(&ram, &make_stance(1), 1);
-    let mut seen_counts = [0; 2];
+    let mut found_counts = [0; 2];
     for n in 2..9 {
         let complete_ram = ram.with_reset_after(usize::MAX);
         store_stance(&complete_ram, &make_stance(n), n as u8);
@@ -121,13 +121,13 @@ fn a_reset_between_any_two_stores_leaves_the_old_stance_or_the_new_one() {
                 index == 1 || found_stance == Some(make_stance(n - 1)),
                 "{n} {stores}"
             );
-            seen_counts[index] += 1;
+            found_counts[index] += 1;
         }
         store_stance(&ram, &make_stance(n), n as u8);
     }
     assert!(
-        seen_counts[0] > 100 && seen_counts[1] == 7,
-        "{seen_counts:?}"
+        found_counts[0] > 100 && found_counts[1] == 7,
+        "{found_counts:?}"
     );
 }
 

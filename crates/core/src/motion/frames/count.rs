@@ -13,7 +13,7 @@ use crate::numbers::units::phase16;
 pub(super) struct CycleCount {
     /// Cycles left, including the present one; 0 if the gait has no count.
     pub cycles_left: u16,
-    /// The phase covered since the count began, modulo one cycle.
+    /// The phase covered since the count started, modulo one cycle.
     pub phase_covered: u16,
     /// The gait's phase in the last frame.
     pub last_phase: u16,
@@ -45,10 +45,10 @@ impl Motion {
         if gait.increment < 0 {
             advance = advance.wrapping_neg();
         }
-        let (phase_covered, mut is_over) = count.phase_covered.overflowing_add(advance);
+        let (phase_covered, mut is_cycle_over) = count.phase_covered.overflowing_add(advance);
         count.phase_covered = phase_covered;
-        is_over |= count.cycles_left == 1 && phase_covered.checked_add(3 * advance).is_none();
-        if is_over {
+        is_cycle_over |= count.cycles_left == 1 && phase_covered.checked_add(3 * advance).is_none();
+        if is_cycle_over {
             count.cycles_left -= 1;
             if count.cycles_left == 0 {
                 self.next_target = Some(Target::Standstill);

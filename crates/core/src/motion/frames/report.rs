@@ -1,4 +1,4 @@
-//! The methods by which other modules read the state of a motion.
+//! The methods with which other modules read the state of a motion.
 
 use super::Motion;
 use crate::guard::hazard::Hazard;
@@ -24,12 +24,12 @@ impl Motion {
         matches!(self.state, State::Resting)
     }
 
-    /// The pulses of the last frame, including those of servos that sleep.
+    /// The pulses of the last frame, including those of servos that are not awake yet.
     pub const fn sent_pulses(&self) -> &Pulses {
         &self.stance.sent_pulses
     }
 
-    /// The pace of gaits that was set, in percent of their own.
+    /// The pace of gaits that was set, in percent of the pace in robot.toml.
     pub const fn speed_percent(&self) -> u8 {
         self.speed_percent
     }

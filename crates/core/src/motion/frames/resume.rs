@@ -1,7 +1,7 @@
 //! The first frames after a reset: the servos wake in the pose in which they are.
 //!
 //! A servo does not report its angle. But a robot that rested or held a pose until the reset is still in the pose that
-//! was saved. So it can wake there and need not jump to the neutral pose.
+//! was saved. So its servos can wake there and need not jump to the neutral pose.
 
 use super::{AWAKE_FRAMES, Motion, WAKE_INTERVAL_FRAMES};
 use crate::memory::restart::Stance;

@@ -21,19 +21,19 @@ const FRAMES_TO_WAKE: u32 = 20;
 const TRANSITION_FRAMES: u32 = 150;
 
 impl Motion {
-    /// The motion of [`Sample::odd`], awake and in `stand` at full pace.
+    /// Returns the motion of [`Sample::odd`], awake and in `stand` at full pace.
     fn standing() -> Self {
         Self::awake(Sample::odd())
     }
 
-    /// The motion of a robot that is awake and in `stand` at full pace.
+    /// Returns the motion of a robot that is awake and in `stand` at full pace.
     fn awake(robot: Sample) -> Self {
         let mut motion = Self::new(*robot);
         motion.run(FRAMES_TO_WAKE + 7);
         motion
     }
 
-    /// A motion `frames` frames after the command for a gait.
+    /// Returns a motion `frames` frames after the command for a gait.
     fn in_gait(name: &str, frames: u32) -> Self {
         let mut motion = Self::standing();
         motion.start(name);

@@ -23,7 +23,7 @@ fn exact_shape(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
     })
 }
 
-/// The type-2 margin for a rise, from `2 a b sin = rise s`.
+/// Returns the type-2 margin for a rise, from `2 a b sin = rise s`.
 fn type2_of(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
     2.0 * rise * f64::from(tips_sq) / (left * right)
 }
@@ -33,19 +33,19 @@ proptest! {
 
     #[test]
     fn the_shape_is_that_of_the_triangle_from_folded_to_stretched_couplers(
-        shorter in MIN_COUPLER_STEPS..=MAX_COUPLER,
-        longer in MIN_COUPLER_STEPS..=MAX_COUPLER,
+        first_length in MIN_COUPLER_STEPS..=MAX_COUPLER,
+        second_length in MIN_COUPLER_STEPS..=MAX_COUPLER,
         length_variant in 0u8..4,
         is_exchanged: bool,
         share in (0.0..1.0f64, 0u8..3),
     ) {
         // Equal lengths, nearly equal ones, or any.
-        let longer = match length_variant {
-            0 => shorter,
-            1 => shorter + (longer % 100).min(MAX_COUPLER - shorter),
-            _ => longer,
+        let second_length = match length_variant {
+            0 => first_length,
+            1 => first_length + (second_length % 100).min(MAX_COUPLER - first_length),
+            _ => second_length,
         };
-        let (left, right) = if is_exchanged { (longer, shorter) } else { (shorter, longer) };
+        let (left, right) = if is_exchanged { (second_length, first_length) } else { (first_length, second_length) };
         // Evenly distributed over the range, or dense at one of its ends.
         let share = match share {
             (share, 0) => share,

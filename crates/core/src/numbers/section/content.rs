@@ -38,7 +38,7 @@ pub struct Content {
     pub pins: [u8; 4],
     /// The Arduino number of the pin where the servos' rail is measured; `None` if it is not measured.
     pub rail_pin: Option<u8>,
-    /// The percentage of their own pace to which a low supply limits gaits, 10 to 100.
+    /// The pace to which a low supply limits gaits, in percent of the pace in robot.toml, 10 to 100.
     pub slow_pace: u8,
     /// The servos' angles in the neutral pose.
     pub neutral_angles: [Angle; 4],
@@ -94,20 +94,20 @@ pub struct Map {
 }
 
 impl Map {
-    /// The map in the form that the guard reads.
+    /// Returns the map in the form that the guard reads.
     pub fn cells(&self) -> Cells<'_> {
         Cells::new(self.first_row, Flash::from(self.rows.as_slice()))
     }
 }
 
 impl FiveBarLengths {
-    /// The bars, and the factors that follow from them.
+    /// Computes the bars, and the factors that follow from them.
     pub fn bars(&self) -> Bars {
         let [left, right] = self.cranks;
         Bars::new([self.base, left, right], self.couplers, self.scale)
     }
 
-    /// The tables that the couplers need: rise, stretched rise, folded rise, skew.
+    /// Computes the tables that the couplers need: rise, stretched rise, folded rise, skew.
     fn tables(&self) -> [Option<Table>; CURVE_COUNT] {
         let [left, right] = self.couplers;
         [
@@ -121,8 +121,8 @@ impl FiveBarLengths {
 }
 
 impl Content {
-    /// The size of the section in bytes, which may exceed the flash of a board. [`Content::section_bytes`] may append a
-    /// few bytes, so that the checksum detects every likely change.
+    /// Computes the size of the section in bytes, which may exceed the flash of a board. [`Content::section_bytes`] may
+    /// append a few bytes, so that the checksum detects every likely change.
     pub fn section_length(&self) -> usize {
         let mut curves = Vec::new();
         self.append_curves(&mut curves);
@@ -136,7 +136,7 @@ impl Content {
             + rows * size_of::<[i8; 2]>()
     }
 
-    /// The bytes of the section, which may exceed the flash of a board, see [`super::SPACE_BYTES`].
+    /// Makes the bytes of the section, which may exceed the flash of a board, see [`super::SPACE_BYTES`].
     ///
     /// # Panics
     /// If a map has more than 255 rows, or the section more than 65 535 bytes.

@@ -108,7 +108,8 @@ mod tests {
 
     use super::*;
 
-    /// The reference for [`has_undetected_prefix`]: computes the checksum of each cut section from its first byte on.
+    /// The reference implementation of [`has_undetected_prefix`]: computes the checksum of each cut section from its
+    /// first byte on.
     fn has_prefix_with_sum(bytes: &[u8]) -> bool {
         let sum = Checksum::of(bytes);
         (0..bytes.len()).any(|end| {
@@ -118,7 +119,8 @@ mod tests {
         })
     }
 
-    /// The reference for [`has_undetected_length`]: computes the checksums from the bytes that the flash would hold.
+    /// The reference implementation of [`has_undetected_length`]: computes the checksums from the bytes that the flash
+    /// would hold.
     fn has_other_length_with_sum(section: &[u8]) -> bool {
         let sum = Checksum::of(&section[CRC_RANGE_START..]);
         let mut flash = section.to_vec();

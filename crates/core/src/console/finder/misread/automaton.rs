@@ -147,8 +147,8 @@ impl LineAutomaton {
         automaton
     }
 
-    /// Creates an automaton of a superset of the lines that the parser accepts: there may be any number of arguments, of
-    /// any length.
+    /// Creates an automaton of a superset of the lines that the parser accepts: there may be any number of arguments,
+    /// of any length.
     pub fn accepted_lines() -> Self {
         let mut automaton = Self::new();
         for word in GAIT_NAMES

@@ -16,7 +16,7 @@ enum Order {
     Speed(u8),
 }
 
-/// Random orders, each with the number of frames until the next order.
+/// Yields random orders, each with the number of frames until the next order.
 fn any_orders() -> impl Strategy<Value = Vec<(Order, u32)>> {
     let any_order = prop_oneof![
         5 => prop::sample::select(GAIT_NAMES.to_vec()).prop_map(Order::Gait),

@@ -11,7 +11,7 @@ fn measure_cycles(motion: &mut Motion) -> (f64, u32) {
         let was_cycling = motion.is_cycling();
         motion.tick();
         frames += 1;
-        assert!(frames < 200_000, "it never ends");
+        assert!(frames < 200_000, "the motion never ends");
         if motion.has_come_to_standstill() {
             return (cycles_covered, frames);
         }
@@ -26,7 +26,7 @@ fn measure_cycles(motion: &mut Motion) -> (f64, u32) {
     }
 }
 
-/// The share of a cycle that a gait covers in a frame at full pace; negative for a gait that is read backwards.
+/// Returns the share of a cycle that a gait covers in a frame at full pace; negative for a gait that is read backwards.
 fn cycles_per_frame(motion: &Motion, name: &str) -> f64 {
     f64::from(motion.robot.gait(motion.robot.gait_id(name)).increment) / f64::from(CYCLE)
 }

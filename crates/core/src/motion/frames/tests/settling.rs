@@ -43,7 +43,7 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
 
 #[test]
 fn the_first_pulses_after_a_reset_repeat_the_last_ones_however_far_the_settings_differ() {
-    // The reset may have come after the last pulses were computed and before they were sent.
+    // The reset may have occurred after the last pulses were computed and before they were sent.
     let stance_before = *Motion::standing().stance();
     let mut motion = Motion::new(*Sample::odd());
     for index in 0..4 {

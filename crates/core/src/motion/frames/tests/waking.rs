@@ -29,7 +29,7 @@ fn stop_and_rest_change_nothing_while_the_robot_rests() {
 fn a_gait_or_a_pose_first_wakes_the_servos_where_they_were_left() {
     for is_pose in [false, true] {
         let mut motion = resting_motion();
-        let left_pose = *motion.pose();
+        let pose_before = *motion.pose();
         if is_pose {
             motion.go_to_sweeps(SWEEPS);
             assert_eq!(motion.activity(), Activity::Pose);
@@ -39,7 +39,7 @@ fn a_gait_or_a_pose_first_wakes_the_servos_where_they_were_left() {
         }
         for _ in 0..FRAMES_TO_WAKE {
             motion.tick();
-            assert_eq!(motion.pose(), &left_pose);
+            assert_eq!(motion.pose(), &pose_before);
         }
         assert_eq!(motion.tick(), motion.held_pulses());
         assert!(motion.is_moving());
