@@ -1,4 +1,4 @@
-/* The ADC by the ATmega328P's data sheet, chapter 24: it measures against a supply that changes,
+/* The ADC according to the ATmega328P's data sheet, chapter 24: it measures against a supply that changes,
  * the bandgap needs time to settle, the first conversion takes 25 ADC clocks and every other 13,
  * and a result is read in two halves.
  *
@@ -27,7 +27,7 @@ struct adc {
 	double bandgap_mv;
 	uint64_t enabled_at;            /* cycle at which ADEN was set */
 	uint64_t selected_at;           /* cycle at which the channel was selected */
-	double previous_mv;             /* voltage of the channel selected before */
+	double previous_mv;             /* voltage of the previously selected channel */
 	bool converting;                /* a conversion is in progress */
 	bool next_is_first;             /* the next conversion is the first since ADEN was set */
 	bool result_locked;             /* ADCL has been read and ADCH has not */

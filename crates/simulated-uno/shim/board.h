@@ -50,7 +50,7 @@ struct uno {
 	struct adc adc;                  /* in the stock fidelity, only sets the voltages at the pins */
 	struct contacts contacts;        /* contacts between pins and ground */
 
-	/* Corrections by the data sheet; not attached in the stock fidelity. */
+	/* Corrections according to the data sheet; not attached in the stock fidelity. */
 	struct interrupts interrupts;    /* entry times and flags of interrupts */
 	struct timer1 timer1;            /* the TEMP byte of Timer1's 16-bit registers */
 	struct pin_toggle pin_toggle;    /* `sbi PINx, n` toggles one pin */

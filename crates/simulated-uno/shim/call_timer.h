@@ -19,7 +19,7 @@ struct call_timer {
 	bool enabled;            /* true: simavr must run one instruction at a time */
 	bool in_call;            /* true between the entry and the return of a timed call */
 	uint32_t entry;          /* byte address of the function in flash */
-	/* Of the timed call in progress: */
+	/* The timed call in progress: */
 	uint32_t return_address; /* byte address in flash after the call instruction */
 	uint16_t stack_pointer;  /* stack pointer at the entry */
 	uint64_t enter_cycle;    /* cycle of the entry */
@@ -32,5 +32,5 @@ void call_timer_attach(struct call_timer *timer, const avr_t *avr,
 void call_timer_reset(struct call_timer *timer);
 /* Starts or stops timing the calls of the function at byte address `entry`. */
 void call_timer_set(struct call_timer *timer, bool enabled, uint32_t entry);
-/* To be called before each instruction: notices that a timed call begins or has returned. */
+/* To be called before each instruction: detects the start and the end of a timed call. */
 void call_timer_check(struct call_timer *timer);

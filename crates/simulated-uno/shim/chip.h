@@ -1,5 +1,5 @@
-/* An ATmega328P at 16 MHz: its registers, and hooks for our own callbacks in simavr's table of
- * them.
+/* An ATmega328P at 16 MHz: its registers, and hooks for our own callbacks in simavr's callback
+ * table.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

@@ -6,8 +6,8 @@ enum { /* EECR */
 };
 
 #define ARMED_CYCLES 4 /* EEPE must be set within these after EEMPE */
-#define READ_HALT_CYCLES 4 /* the CPU stands still after EERE is set */
-#define WRITE_HALT_CYCLES 2 /* the CPU stands still after EEPE is set */
+#define READ_HALT_CYCLES 4 /* the CPU is halted after EERE is set */
+#define WRITE_HALT_CYCLES 2 /* the CPU is halted after EEPE is set */
 
 /* Durations of an operation by enum eeprom_mode (table 8-1). */
 static const uint64_t duration_cycles[] = {
@@ -58,14 +58,14 @@ static void arm_timers(struct eeprom *eeprom)
 }
 
 /* The cycle at which the erase phase of an erase-and-write operation ends. The data sheet
- * does not tell; half of the duration is assumed. */
+ * does not say; half of the duration is assumed. */
 static uint64_t erase_end(const struct eeprom *eeprom)
 {
 	return eeprom->started_at + (eeprom->ends_at - eeprom->started_at) / 2;
 }
 
-/* Counts the operation against the requested power cut. Returns the cycle at which the power
- * is to fail, the middle of the requested phase; 0 if not in this operation. */
+/* Counts this operation towards the requested power cut. Returns the cycle of the cut, in the
+ * middle of the requested phase; 0 if the cut is not in this operation. */
 static uint64_t take_cut_request(struct eeprom *eeprom, uint8_t mode)
 {
 	struct eeprom_cut_request *request = &eeprom->cut_request;

@@ -1,8 +1,8 @@
-/* The EEPROM by the ATmega328P's data sheet, 8.4 and 8.6.
+/* The EEPROM according to the ATmega328P's data sheet, 8.4 and 8.6.
  *
  * simavr 1.6 stores a byte at once, never reads busy, and knows no erase-only
  * or write-only mode. Here a byte takes 3.4 or 1.8 ms, the EEPROM Ready
- * interrupt is a level, the CPU stands still for 4 cycles when it reads and 2
+ * interrupt is a level, the CPU is halted for 4 cycles when it reads and 2
  * when it writes, and a power cut leaves a byte torn.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
@@ -28,10 +28,10 @@ struct eeprom_operation {
 	uint8_t is_torn;   /* 1 if a power cut ended the operation */
 };
 
-/* The request that the power fail in a later operation. */
+/* A request to cut the power during a later operation. */
 struct eeprom_cut_request {
 	bool pending;
-	uint64_t skip_count; /* operations that begin before that one */
+	uint64_t skip_count; /* number of operations before that one */
 	bool in_write;       /* true: in the write phase; false: in the erase phase */
 };
 
@@ -44,9 +44,9 @@ struct eeprom {
 	uint64_t armed_until;      /* last cycle at which setting EEPE starts an operation */
 	bool busy;                 /* an operation is in progress */
 	uint64_t started_at;       /* cycle at which the operation in progress started */
-	uint64_t ends_at;          /* cycle at which it ends */
-	uint64_t cut_at;           /* cycle at which a power cut tears it, 0: never */
-	uint8_t written_data;      /* EEDR when it started */
+	uint64_t ends_at;          /* cycle at which the operation ends */
+	uint64_t cut_at;           /* cycle at which a power cut tears the byte, 0: never */
+	uint8_t written_data;      /* EEDR when the operation started */
 	struct eeprom_cut_request cut_request;
 	uint8_t torn_ones;         /* bits set in a torn byte in addition to its old or new value */
 	struct list operations;    /* all operations so far: struct eeprom_operation */

@@ -22,7 +22,7 @@ uint64_t instruction_effect_cycle(const struct instruction *instruction);
  * `sbi` writes a single bit, but simavr implements it as a read and a write of all eight. */
 uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t value);
 /* The bits of an I/O register that the instruction being executed can change: one bit if it
- * is `sbi` or `cbi`, else all. */
+ * is `sbi` or `cbi`, otherwise all. */
 uint8_t instruction_touched_bits(const struct instruction *instruction);
 /* Halts the CPU for `cycles` after the instruction being executed. simavr does not count
  * these cycles in the slice of instructions that it runs at once, so end the slice, too, or

@@ -1,4 +1,4 @@
-/* Corrections of simavr 1.6's interrupts by the ATmega328P's data sheet.
+/* Corrections of simavr 1.6's interrupts according to the ATmega328P's data sheet.
  *
  * - An interrupt takes 4 cycles to enter, 4 more from sleep (7.7.1).
  * - An enabled interrupt is served whenever its flag is set, even if it was enabled after the
@@ -14,7 +14,7 @@
 /* An interrupt without a flag: it is requested as long as its condition holds. */
 struct level_interrupt {
 	const avr_int_vector_t *vector;
-	bool requested; /* its condition holds */
+	bool requested; /* true while the condition holds */
 };
 
 struct interrupts {

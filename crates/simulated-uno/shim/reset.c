@@ -56,7 +56,7 @@ void reset_stop_timers(const struct reset *reset)
 	}
 }
 
-/* The cause that is recorded if there are several at once. */
+/* Returns the cause that is recorded if there are several at once. */
 static uint8_t main_cause(uint8_t causes)
 {
 	static const uint8_t causes_by_rank[] = { RESET_POWER_ON, RESET_BROWN_OUT, RESET_WATCHDOG };
@@ -76,7 +76,7 @@ void reset_record(struct reset *reset, uint8_t causes, uint64_t now)
 	if (causes & RESET_POWER_ON)
 		reset->mcusr = RESET_POWER_ON;
 	else if (causes && !reset->data_sheet)
-		reset->mcusr = causes; /* stock simavr forgets the earlier ones */
+		reset->mcusr = causes; /* stock simavr discards the earlier ones */
 	else
 		reset->mcusr |= causes;
 	if (reset->boot_loader)

@@ -1,4 +1,4 @@
-/* Resets by the ATmega328P's data sheet, chapter 11: pending requests, the causes in MCUSR, and
+/* Resets according to the ATmega328P's data sheet, chapter 11: pending requests, the causes in MCUSR, and
  * the SRAM at power-on.
  *
  * A part requests a reset or a power cut here; restart.c carries it out between two
@@ -27,7 +27,7 @@ struct reset {
 	bool power_cut_requested;
 	uint8_t mcusr;            /* MCUSR, which simavr's reset clears */
 	uint64_t noise_state;     /* state of the random generator whose output fills the SRAM */
-	uint8_t *initial_sram;    /* the data space as power-on left it */
+	uint8_t *initial_sram;    /* the data space right after power-on */
 	struct list events;       /* all resets, power-on included: struct reset_event */
 };
 

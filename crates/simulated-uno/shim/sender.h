@@ -43,8 +43,8 @@ struct sender {
 };
 
 void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, double baud);
-/* To be called after simavr's reset, which drops all timers: sends on. The byte on the line
- * is lost. */
+/* To be called after simavr's reset, which drops all timers: resumes sending. The byte on the
+ * line is lost. */
 void sender_reset(struct sender *sender, uint64_t now);
 void sender_set_baud(struct sender *sender, double baud);
 /* Queues bytes. `now`, here and below: the current cycle, which may be ahead of avr->cycle

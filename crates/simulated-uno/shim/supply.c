@@ -78,7 +78,7 @@ static void apply_voltage(struct supply *supply, double mv)
 	}
 }
 
-/* Holds the chip in reset or releases it, by the present voltage. */
+/* Holds the chip in reset or releases it, depending on the current voltage. */
 static void update(struct supply *supply, uint64_t now)
 {
 	if (!supply->data_sheet)

@@ -26,16 +26,16 @@ void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
                    struct eeprom *eeprom, bool data_sheet);
 /* The voltage at a cycle, from the start of the last ramp on. */
 double supply_mv(const struct supply *supply, uint64_t cycle);
-/* Changes the voltage linearly to `mv` within `cycles` from now. */
+/* Changes the voltage linearly to `mv` over `cycles` from now. */
 void supply_ramp(struct supply *supply, double mv, uint64_t now, uint64_t cycles);
 /* Sets the brown-out level, 0: off. */
 void supply_set_brown_out(struct supply *supply, double mv, uint64_t now);
-/* Makes the power fail at a cycle, 0: never. */
+/* Schedules a power cut at a cycle, 0: never. */
 void supply_schedule_power_cut(struct supply *supply, uint64_t cycle);
 /* True while a ramp of the supply or a power cut can still reset the chip. */
 bool supply_may_reset(const struct supply *supply);
-/* To be called after simavr's reset, which drops all timers: sets those of the supply again. */
+/* To be called after simavr's reset, which drops all timers: arms those of the supply again. */
 void supply_reset(struct supply *supply);
-/* To be called when the power is restored after a cut: sets `holds_reset` by the present
- * voltage. */
+/* To be called when the power is restored after a cut: sets `holds_reset` according to the
+ * current voltage. */
 void supply_power_on(struct supply *supply);

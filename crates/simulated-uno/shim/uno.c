@@ -318,7 +318,7 @@ void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
 	sender_flood(&uno->sender, bytes, length, uno->now);
 }
 
-void uno_block_interrupts(struct uno *uno, uint64_t cycles)
+void uno_block_cpu(struct uno *uno, uint64_t cycles)
 {
 	avr_t *avr = uno->avr;
 	uno->disturbance.blocked_cycles = cycles;

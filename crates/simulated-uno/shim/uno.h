@@ -20,9 +20,9 @@ enum stop_reason {
 
 /* Directs simavr's error messages to the uno that they concern. To be called once. */
 void uno_set_logger(void);
-/* `data_sheet`: true for the data-sheet fidelity, simavr corrected by the data sheet; false
+/* `data_sheet`: true for the data-sheet fidelity, simavr corrected to match the data sheet; false
  * for the stock fidelity, simavr as it is. `pins`: the pins whose edges are recorded, bit n =
- * Arduino pin n. `baud`: the sender's rate. */
+ * Arduino pin n. `baud`: the sender's baud rate. */
 struct uno *uno_new(bool data_sheet, uint32_t pins, double baud);
 void uno_free(struct uno *uno);
 /* Copies `size` bytes into flash at a byte address. Returns false if they do not fit. */
@@ -30,9 +30,9 @@ bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t addr
 /* To be called after the last uno_load: flash contains code up to byte address `code_end`, and
  * static data ends before data address `data_end`. */
 void uno_finish_loading(struct uno *uno, uint32_t code_end, uint16_t data_end);
-/* Runs until cycle `until`, or until another of the reasons applies. */
+/* Runs until cycle `until`, or until another stop reason occurs. */
 enum stop_reason uno_run(struct uno *uno, uint64_t until);
-/* On: a run ends when the firmware has sent a complete line. */
+/* While `on` is true, a run ends as soon as the firmware has sent a complete line. */
 void uno_stop_at_line(struct uno *uno, bool on);
 /* Starts or stops timing the calls of the function at byte address `entry`. */
 void uno_time_calls(struct uno *uno, bool on, uint32_t entry);
@@ -41,15 +41,16 @@ void uno_time_calls(struct uno *uno, bool on, uint32_t entry);
 void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_bit_low);
 /* Sends `bytes` repeatedly whenever the queue is empty; length 0 ends the flood. */
 void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length);
-/* Sets the sender's rate. */
+/* Sets the sender's baud rate. */
 void uno_set_baud(struct uno *uno, double baud);
-/* The length of a bit of the chip's USART, as its registers set it. */
+/* The length of a bit of the chip's USART, cycles, as its registers set it. */
 uint32_t uno_cycles_per_bit(const struct uno *uno);
-/* See usart_sample_byte. */
+/* Returns the byte that a receiver reads if its bit is `ratio` times as long as the sender's; see
+ * usart_sample_byte. */
 uint8_t uno_sample_byte(uint8_t byte, double ratio);
-/* Blocks the CPU and its interrupts for `cycles`, at once or as soon as interrupts are enabled:
- * see disturbance.h. */
-void uno_block_interrupts(struct uno *uno, uint64_t cycles);
+/* Occupies the CPU for `cycles`, as a foreign interrupt would, at once or as soon as interrupts are
+ * enabled; see disturbance.h. */
+void uno_block_cpu(struct uno *uno, uint64_t cycles);
 /* The main program executes nothing before cycle `until`; interrupts are served. */
 void uno_stall_main(struct uno *uno, uint64_t until);
 /* Writes to a data address as the instruction `sts` would. */
@@ -100,30 +101,31 @@ bool uno_is_held_in_reset(const struct uno *uno);
 struct list *uno_reset_events(struct uno *uno);      /* struct reset_event */
 uint8_t *uno_eeprom(struct uno *uno);                /* 1024 bytes */
 struct list *uno_eeprom_operations(struct uno *uno); /* struct eeprom_operation */
-/* Sets the bits that a torn byte has in addition to those of its old value (power cut while
+/* Sets the bits that read as 1 in a torn byte besides those of its old value (power cut while
  * it is erased) or of its new value (power cut while it is written). */
 void uno_set_torn_ones(struct uno *uno, uint8_t ones);
+/* Cuts the power at this cycle. */
 void uno_cut_power_at(struct uno *uno, uint64_t cycle);
 /* Cuts the power in an EEPROM operation, after `skip_count` others have begun. `in_write`: in
  * its write phase, not in its erase phase. */
 void uno_cut_power_in_operation(struct uno *uno, uint64_t skip_count, bool in_write);
 /* Cancels every power cut that has not happened yet. */
 void uno_cancel_power_cut(struct uno *uno);
-/* The present supply voltage, mV. */
+/* The current supply voltage, mV. */
 double uno_supply_mv(const struct uno *uno);
-/* Changes the supply voltage linearly to `mv` within `cycles`. */
+/* Changes the supply voltage linearly to `mv` over `cycles`. */
 void uno_ramp_supply(struct uno *uno, double mv, uint64_t cycles);
-/* Sets the brown-out level; 0 disables brown-out detection. */
+/* Sets the brown-out level, mV; 0 disables brown-out detection. */
 void uno_set_brown_out(struct uno *uno, double mv);
-/* Sets the voltage of the bandgap reference. */
+/* Sets the voltage of the bandgap reference, mV. */
 void uno_set_bandgap(struct uno *uno, double mv);
-/* Sets the voltage at the analogue pin of this ADC channel. */
+/* Sets the voltage at the analogue pin of this ADC channel, mV. */
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
 /* Closes or opens a contact between ground and bit `bit` of the port whose PIN register has this
  * data address. */
 void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool closed);
 
-/* Makes every reset, and the present start, begin at this byte address in flash, as the fuse
+/* Makes every reset, and the current start, begin at this byte address in flash, as the fuse
  * BOOTRST does. */
 void uno_set_boot_address(struct uno *uno, uint32_t address);
 uint8_t *uno_flash(struct uno *uno);                 /* 32768 bytes */

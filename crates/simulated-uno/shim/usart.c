@@ -13,7 +13,7 @@ enum { /* UCSR0B */
 
 #define DATA_BITS 8
 #define FRAME_BITS 10
-/* The largest relative error of the rate at which the last sample still is inside the stop bit. */
+/* The largest relative error of the baud rate at which the last sample is still inside the stop bit. */
 #define BAUD_TOLERANCE 0.045
 
 uint32_t usart_cycles_per_bit(const avr_t *avr)

@@ -1,7 +1,7 @@
-/* USART0 of the ATmega328P by its data sheet, chapter 20.
+/* USART0 of the ATmega328P according to the data sheet, chapter 20.
  *
  * simavr 1.6 keeps 64 received bytes and takes 11 bits for a frame, so that an overrun never
- * happens. Here a frame has 10 bits at the rate that the registers set at present. Two received
+ * happens. Here a frame has 10 bits at the rate that the registers currently set. Two received
  * bytes wait in the buffer and a third in the shift register; the third is lost when a fourth
  * begins (DOR). The transmitter has a buffer of one byte.
  *
@@ -38,7 +38,7 @@ void usart_reset(struct usart *usart);
 /* Returns the USART as the receiver at the end of the sender's cable. */
 struct receiver usart_receiver(struct usart *usart);
 
-/* The length of a bit, as the registers set it at present. */
+/* The length of a bit, cycles, as the registers currently set it. */
 uint32_t usart_cycles_per_bit(const avr_t *avr);
 /* Returns the byte that a receiver reads from a sender with another baud rate. The receiver
  * samples the line in the middle of each of its own data bits, counted from the edge of the

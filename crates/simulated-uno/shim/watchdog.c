@@ -115,7 +115,7 @@ void watchdog_attach(struct watchdog *watchdog, const struct instruction *instru
 		.reset = reset,
 		.stock = (avr_watchdog_t *)chip_part(avr, "watchdog"),
 	};
-	avr_register_io(avr, &watchdog->io); /* goes before simavr's own watchdog */
+	avr_register_io(avr, &watchdog->io); /* precedes simavr's own watchdog in the list */
 	hook_write(avr, REG_WDTCSR, write_control, watchdog);
 	hook_read(avr, REG_WDTCSR, read_control, watchdog);
 	avr_irq_register_notify(watchdog->stock->watchdog.irq + AVR_INT_IRQ_RUNNING, on_vector,

@@ -1,4 +1,4 @@
-/* The watchdog by the ATmega328P's data sheet, 11.8 and 11.9.2.
+/* The watchdog according to the ATmega328P's data sheet, 11.8 and 11.9.2.
  *
  * simavr 1.6 never resets while the interrupt is enabled, restarts the counter
  * when its prescaler is changed, and clears WDIE in interrupt mode.
@@ -20,14 +20,14 @@ struct watchdog {
 	struct interrupts *interrupts;
 	struct reset *reset;
 	avr_watchdog_t *stock;      /* simavr's watchdog, for its interrupt vector */
-	uint64_t counter_start;     /* cycle at which the counter was last zero */
+	uint64_t counter_start;     /* last cycle at which the counter was zero */
 	uint64_t change_window_end; /* last cycle at which WDE and WDP may change, after WDCE is set */
 };
 
 /* Replaces simavr's watchdog. */
 void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
                      struct interrupts *interrupts, struct reset *reset);
-/* To be called after a reset: switches the watchdog on if WDRF is set, else off. */
+/* To be called after a reset: switches the watchdog on if WDRF is set, otherwise off. */
 void watchdog_reset(struct watchdog *watchdog);
 /* True if the watchdog will reset the chip unless the firmware acts. */
 bool watchdog_may_reset(const struct watchdog *watchdog);

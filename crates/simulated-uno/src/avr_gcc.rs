@@ -4,8 +4,8 @@
 //! hand with the data sheet. Such a program is easiest to read next to the expected result. This module needs
 //! Debian's `gcc-avr` and `avr-libc`.
 //!
-//! All functions except [`run`] panic with avr-gcc's own message if avr-gcc rejects the program, because a test can
-//! do nothing else.
+//! All functions except [`run`] panic with avr-gcc's own message if avr-gcc rejects the program, because a test
+//! cannot handle the error.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::Image;
 /// Compiles C (or, inside `asm`, assembly) with avr-gcc for the UNO's chip.
 ///
 /// # Panics
-/// If avr-gcc is missing. If avr-gcc rejects the program: with avr-gcc's own message.
+/// If avr-gcc is missing, or if it rejects the program: then with avr-gcc's own message.
 #[must_use]
 pub fn compile_c(source: &str) -> Image {
     build(source, "c", &["-O2", "-std=gnu11"])
@@ -77,7 +77,7 @@ fn build(source: &str, extension: &str, flags: &[&str]) -> Image {
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let input = folder.path().join(format!("program.{extension}"));
     let output = folder.path().join("program.elf");
-    std::fs::write(&input, source).expect("the source is written");
+    std::fs::write(&input, source).expect("the source can be written");
     run(flags, &[input.as_ref()], &output).unwrap_or_else(|error| panic!("{error}"));
     Image::read(output).expect("avr-gcc's ELF loads")
 }

@@ -40,7 +40,7 @@ impl Uno {
 
     /// Clears the record of received bytes, [`Uno::received_by_uno`], which would otherwise grow for as long as the
     /// UNO runs.
-    pub(crate) fn forget_received(&mut self) {
+    pub(crate) fn clear_received(&mut self) {
         self.clear_items(ffi::uno_received);
     }
 }

@@ -7,11 +7,11 @@ use crate::ffi;
 
 impl Uno {
     /// Interrupts the program for `cycles`, with priority over all of the chip's own interrupts. Meanwhile the
-    /// program executes nothing, but flags are set and bytes arrive. The interruption begins at once, or as soon as
-    /// interrupts are enabled. A second call before its beginning replaces the first.
+    /// program executes nothing, but flags are set and bytes arrive. The interruption starts at once, or as soon as
+    /// interrupts are enabled. A second call before its start replaces the first.
     pub fn block_interrupts(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim counts the cycles.
-        unsafe { ffi::uno_block_interrupts(self.raw, cycles) }
+        unsafe { ffi::uno_block_cpu(self.raw, cycles) }
     }
 
     /// Stops the main program for this many cycles, as if its next instruction took that long. Interrupts are

@@ -48,10 +48,10 @@ pub struct EepromOperation {
 pub enum PowerCut {
     /// At this cycle since power-on.
     AtCycle(u64),
-    /// In the middle of the erase phase of a later operation, after this number of operations is skipped: 0 is the
+    /// In the middle of the erase phase of a later operation, after this number of skipped operations: 0 is the
     /// next operation.
     InErase(u64),
-    /// In the middle of the write phase of a later operation, after this number of operations is skipped: 0 is the
+    /// In the middle of the write phase of a later operation, after this number of skipped operations: 0 is the
     /// next operation. An operation that only erases or only writes is cut in its middle by both `InErase` and
     /// `InWrite`.
     InWrite(u64),
@@ -109,7 +109,7 @@ impl Uno {
 
     /// Cancels a power failure that [`Uno::cut_power`] has scheduled and that has not happened yet.
     pub fn cancel_power_cut(&mut self) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim forgets what
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim clears what
         // `cut_power` has set.
         unsafe { ffi::uno_cancel_power_cut(self.raw) }
     }

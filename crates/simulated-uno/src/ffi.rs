@@ -68,7 +68,7 @@ unsafe extern "C" {
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
     pub fn uno_cycles_per_bit(uno: *const RawUno) -> u32;
     pub fn uno_sample_byte(byte: u8, ratio: f64) -> u8;
-    pub fn uno_block_interrupts(uno: *mut RawUno, cycles: u64);
+    pub fn uno_block_cpu(uno: *mut RawUno, cycles: u64);
     pub fn uno_stall_main(uno: *mut RawUno, until: u64);
     pub fn uno_poke(uno: *mut RawUno, address: u16, value: u8);
     pub fn uno_unsent_count(uno: *const RawUno) -> usize;

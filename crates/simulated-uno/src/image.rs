@@ -21,7 +21,7 @@ const DATA_SPACE: u64 = 0x80_0000;
 /// The address of the EEPROM in the single address space of avr-gcc's linker script.
 const EEPROM_SPACE: u64 = 0x81_0000;
 
-/// The reason an image cannot be loaded.
+/// The reason why an image cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read.
@@ -57,7 +57,7 @@ pub enum LoadError {
     HexLine {
         /// The line's number, counted from 1.
         line: usize,
-        /// The line's fault.
+        /// The error in the line.
         reason: String,
     },
     /// The HEX file has no end record, so lines may be missing.
@@ -287,7 +287,7 @@ impl Image {
     }
 
     /// Writes bytes to the start of a range of flash and removes everything else that the image has in the range.
-    /// With this, the data of a compiled program can be exchanged without compiling it again.
+    /// This exchanges the data of a compiled program without compiling it again.
     ///
     /// # Errors
     /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for the bytes.

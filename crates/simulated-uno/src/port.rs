@@ -167,7 +167,7 @@ impl Port {
         if *uno.state() == State::Alive {
             uno.run_until_cycle(self.target_cycle(uno.cycle()));
         }
-        uno.forget_received();
+        uno.clear_received();
         let arrived_bytes = match &mut self.radio {
             Some(radio) => radio.exchange(uno),
             None => {
@@ -189,8 +189,8 @@ impl Port {
         Ok(())
     }
 
-    /// Returns the cycle that the chip should have reached by now, at most [`MAX_CATCH_UP`] ahead. A longer delay is
-    /// not caught up.
+    /// Returns the cycle that the chip should have reached by now, at most [`MAX_CATCH_UP`] ahead. The rest of a longer
+    /// delay is skipped.
     fn target_cycle(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
         let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
@@ -224,7 +224,7 @@ impl BackgroundPort {
         &self.path
     }
 
-    /// Ends the thread and closes the port. Returns the UNO in its present state.
+    /// Ends the thread and closes the port. Returns the UNO in its current state.
     ///
     /// # Errors
     /// Returns the error that ended the thread: see [`Port::serve`].

@@ -2,13 +2,13 @@
 //! reads and writes at the other side.
 //!
 //! A pseudo terminal differs from a serial port in three ways. It has no DTR line, so this module watches the port's
-//! file to notice that a program opens it. The baud rate that a program sets has no effect, but can be read. And
+//! file to detect that a program opens it. The baud rate that a program sets has no effect, but can be read. And
 //! bytes that a program leaves unread would wait for the next program, while the driver of a real port discards
 //! them; so this module discards unread bytes.
 //!
 //! To discard unread bytes, this module opens the port itself for a moment. If another thread starts a program at
 //! that moment, the new process has a copy of all open files until it calls exec, and the port stays open as long as
-//! a copy exists. So this module waits until the port is really closed.
+//! a copy exists. So this module waits until all copies are closed.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -55,7 +55,7 @@ pub(crate) struct Pty {
 }
 
 impl Pty {
-    /// Makes a new pseudo terminal that passes bytes on unchanged.
+    /// Creates a pseudo terminal that passes bytes on unchanged.
     ///
     /// # Errors
     /// Fails if the system has no pseudo terminals left, or no /dev/pts. Fails with [`ErrorKind::TimedOut`] if a
@@ -97,7 +97,7 @@ impl Pty {
         &self.path
     }
 
-    /// Checks the port. Notices every opening, however short, and however short the pause before it.
+    /// Checks the port. Detects every opening, however short, and however short the pause before it.
     ///
     /// # Errors
     /// Fails if the system is out of memory.
@@ -118,9 +118,9 @@ impl Pty {
         // Unread bytes are discarded only if all programs have closed the port, not if another still has it open.
         if was_open && (was_opened || !is_port_open) {
             self.discard_unread()?;
-            let is_port_still_open = self.is_open()?;
-            was_opened |= is_port_still_open && !is_port_open;
-            is_port_open = is_port_still_open;
+            let is_port_open_after_discard = self.is_open()?;
+            was_opened |= is_port_open_after_discard && !is_port_open;
+            is_port_open = is_port_open_after_discard;
         }
         self.was_open = is_port_open;
         self.may_be_reopened = has_close_event && is_port_open && !was_opened;

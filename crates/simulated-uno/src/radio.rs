@@ -2,7 +2,7 @@
 //!
 //! The module replaces the cable between a host, such as a phone, and the chip. Bytes travel in packets of up to 20,
 //! in order, each packet delayed by 7.5 to 100 ms. A packet may be lost. The link may end in the middle of a line and
-//! begin again seconds later; an HM-10 reports both to the chip among the received bytes, as `OK+LOST` and `OK+CONN`
+//! resume seconds later; an HM-10 reports both to the chip among the received bytes, as `OK+LOST` and `OK+CONN`
 //! without a line end, and an HC-05 reports nothing. The module passes bytes on at its own baud rate, and it never
 //! resets the chip.
 //!
@@ -27,9 +27,9 @@ use crate::{CYCLES_PER_MS, Uno};
 const MAX_PACKET_BYTES: usize = 20;
 /// The time that a packet travels, ms.
 const DELAY_MS: std::ops::Range<f64> = 7.5..100.0;
-/// The longest time for which a module collects the chip's bytes for a packet, ms.
+/// The longest time for which the module collects the chip's bytes for a packet, ms.
 const MAX_GATHERING_MS: u64 = 20;
-/// The time between the end of a link and its next beginning, ms.
+/// The time from the end of a link to the next link, ms.
 const OUTAGE_MS: std::ops::Range<u64> = 200..5000;
 
 /// The properties of a radio module and of its link to a phone.
@@ -98,9 +98,9 @@ impl PacketQueue {
         bytes
     }
 
-    /// Ends the transmission: returns the bytes of the next packet that still arrive, a random number. All other bytes
+    /// Ends the transmission: returns a random number of bytes of the next packet, which still arrive. All other bytes
     /// are lost.
-    fn take_remains(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
+    fn take_remainder(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
         let packets = std::mem::take(&mut self.packets);
         let mut next_packet = packets.into_iter().next().unwrap_or_default().1;
         next_packet.truncate(random.usize(..=next_packet.len()));
@@ -117,7 +117,7 @@ pub struct Radio {
     to_phone: PacketQueue,
     /// The chip's bytes that wait until a packet is full, and the cycle from which they have waited.
     gathered: (Vec<u8>, u64),
-    /// The cycle at which the link ends or, while there is no link, begins again; `None` if that never happens.
+    /// The cycle at which the link ends or, while there is no link, resumes; `None` if that never happens.
     next_link_change: Option<u64>,
     is_linked: bool,
     /// True if the phone has moved out of range for good.
@@ -216,10 +216,10 @@ impl Radio {
         [to_uno, self.to_phone.take_arrived(now)]
     }
 
-    /// Ends the link or begins it again. Returns the bytes that still arrive at the chip and at the phone.
+    /// Ends the link or restores it. Returns the bytes that still arrive at the chip and at the phone.
     fn toggle_link(&mut self, now: u64) -> [Vec<u8>; 2] {
         self.is_linked = !self.is_linked;
-        let mut to_uno = self.to_uno.take_remains(&mut self.random);
+        let mut to_uno = self.to_uno.take_remainder(&mut self.random);
         if self.link.reports_link {
             to_uno.extend(if self.is_linked {
                 b"OK+CONN"
@@ -234,7 +234,7 @@ impl Radio {
         self.gathered.0.clear();
         let return_cycle = now + self.random.u64(OUTAGE_MS) * CYCLES_PER_MS;
         self.next_link_change = (!self.has_left).then_some(return_cycle);
-        [to_uno, self.to_phone.take_remains(&mut self.random)]
+        [to_uno, self.to_phone.take_remainder(&mut self.random)]
     }
 
     /// Returns the cycle at which a link that begins now ends; `None` if links never end.

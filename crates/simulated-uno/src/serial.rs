@@ -26,7 +26,7 @@ impl Uno {
     /// stopped.
     ///
     /// Removes all bytes that the UNO has transmitted before and during the call, as [`Uno::take_transmitted`] does.
-    /// The rest of a line that the UNO began earlier counts as the answer. With a firmware that sends lines on its
+    /// The rest of a line that the UNO has already begun counts as the answer. With a firmware that sends lines on its
     /// own, use [`Uno::send`] and [`Uno::run_until_line`].
     pub fn say(&mut self, line: &str) -> Option<String> {
         self.take_transmitted();
@@ -71,7 +71,7 @@ impl Uno {
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
-    /// The present baud rate of the chip's USART, computed from its registers.
+    /// The current baud rate of the chip's USART, computed from its registers.
     #[must_use]
     pub fn chip_baud(&self) -> f64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.

@@ -1,13 +1,13 @@
 //! The supply voltage of the chip, for both VCC and AVCC.
 //!
-//! Servos on a weak supply make its voltage drop while they move. A firmware can measure the drop only with the ADC,
+//! The voltage of a weak supply drops while servos move. A firmware can measure the drop only with the ADC,
 //! and below the brown-out level it does not run at all.
 
 use crate::Uno;
 use crate::ffi;
 
 impl Uno {
-    /// The present supply voltage, mV; 5000 by default.
+    /// The current supply voltage, mV; 5000 by default.
     #[must_use]
     pub fn supply_mv(&self) -> f64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim computes a number.
@@ -22,7 +22,7 @@ impl Uno {
         self.ramp_supply_mv(mv, 0);
     }
 
-    /// Changes the supply voltage linearly to `mv` within `cycles` from now.
+    /// Changes the supply voltage linearly to `mv` over `cycles` from now.
     ///
     /// Below the brown-out level minus half the hysteresis of 50 mV, the chip is held in reset: its pins are inputs,
     /// and time passes. Above the brown-out level plus half the hysteresis, the program starts, with BORF set. Below

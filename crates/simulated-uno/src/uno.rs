@@ -15,7 +15,7 @@ pub enum Fidelity {
     /// Stock simavr 1.6: entry into an interrupt takes no time, received bytes are never lost, the two bytes of a
     /// 16-bit register do not share a TEMP byte.
     Stock,
-    /// simavr corrected by the ATmega328P's data sheet: interrupt entry in 4 cycles (8 from sleep), a two-byte receive
+    /// simavr corrected to match the ATmega328P's data sheet: interrupt entry in 4 cycles (8 from sleep), a two-byte receive
     /// buffer with overrun, 10-bit frames, Timer1's TEMP byte, interrupt flags that are cleared one by one; EEPROM,
     /// ADC, watchdog, resets and brown-out with their times and limits.
     #[default]
@@ -352,7 +352,7 @@ type ListGetter = unsafe extern "C" fn(*mut RawUno) -> *mut RawList;
 
 impl Drop for Uno {
     fn drop(&mut self) {
-        // SAFETY: `raw` was made by `uno_new`, see `Uno`, and is freed this once.
+        // SAFETY: `raw` comes from `uno_new`, see `Uno`, and is freed only here.
         unsafe { ffi::uno_free(self.raw) }
     }
 }

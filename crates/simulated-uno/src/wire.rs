@@ -40,7 +40,7 @@ impl Frame {
     }
 }
 
-/// A wire with two senders, each with its own rate, and a receiver.
+/// A wire with two senders, each with its own baud rate, and a receiver.
 #[derive(Debug)]
 pub struct Wire {
     /// Duration of a bit of each sender, cycles.
@@ -192,13 +192,13 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_has_no_stop_bit_if_the_other_sender_begins_in_it() {
+    fn a_byte_has_no_stop_bit_if_the_other_sender_starts_during_it() {
         let writes: [(usize, &[u8], u64); 2] = [(0, &[0xff], 0), (1, &[0x0f], BYTE_CYCLES - 138)];
         assert_eq!(receive_all(&writes)[0], None);
     }
 
     #[test]
-    fn each_sender_is_read_only_at_its_own_rate() {
+    fn each_sender_is_read_only_at_its_own_baud_rate() {
         let rates = [9_600.0, 57_600.0];
         for (sender, rate) in rates.into_iter().enumerate() {
             let mut wire = Wire::new(rates);

@@ -109,7 +109,7 @@ fn bytes_pass_unchanged_in_both_directions() {
 }
 
 #[test]
-fn at_another_baud_rate_than_the_chips_other_bytes_are_read() {
+fn at_a_baud_rate_other_than_the_chips_different_bytes_are_read() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
@@ -128,7 +128,7 @@ fn at_another_baud_rate_than_the_chips_other_bytes_are_read() {
 }
 
 #[test]
-fn every_opening_resets_the_chip_however_short_the_pause_before() {
+fn every_opening_resets_the_chip_however_short_the_pause_before_it() {
     let board = serve_board();
     for _ in 0..5 {
         let port = open(board.path());
@@ -177,7 +177,7 @@ fn output_while_the_port_is_closed_is_lost() {
     assert_eq!(
         read_text(&program_port, 1),
         "b",
-        "no earlier output comes before the answer"
+        "no earlier output precedes the answer"
     );
     drop(program_port);
     serve(&mut port, &mut uno, 20);

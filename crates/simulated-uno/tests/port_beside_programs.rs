@@ -50,7 +50,7 @@ fn every_opening_by_another_program_resets_the_chip_once() {
     let mut openings = 0;
     while openings < MIN_OPENINGS || STARTED_COUNT.load(Ordering::Relaxed) < MIN_OPENINGS {
         let are_all_running = starters.iter().all(|starter| !starter.is_finished());
-        assert!(are_all_running, "no more programs are started");
+        assert!(are_all_running, "the threads still start programs");
         openings += 1;
         let mut reader = Command::new("bash");
         reader.args(["-c", READER_SCRIPT]).arg(board.path());

@@ -103,7 +103,7 @@ fn a_hex_file_and_its_elf_give_the_same_pulses() {
 }
 
 #[test]
-fn every_pulse_is_listed_if_asked_for() {
+fn every_pulse_is_listed_on_request() {
     let output = run_source(PULSES_PROGRAM, &["--ms", "10", "--pulses"]);
     let output_text = text_of(&output.stdout);
     let rows = output_text.lines().filter(|line| line.starts_with("D9"));

@@ -64,7 +64,7 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
-/// Prints the pulses of all pins that have changed: one line for each pulse if `shows_all`, else one for each pin.
+/// Prints the pulses of all pins that have changed: one line for each pulse if `shows_all`, otherwise one for each pin.
 pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     let us_of = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;

@@ -129,7 +129,7 @@ fn conversions_have_the_results_of_the_data_sheet() {
 }
 
 #[test]
-fn registers_read_as_the_data_sheet_says() {
+fn registers_read_as_in_the_data_sheet() {
     for (message, body, pin_mv, expected) in [
         (
             // "ADSC will read as one as long as a conversion is in progress. When the
@@ -326,7 +326,7 @@ fn the_bandgap_needs_70_us_after_the_channel_is_selected() {
     assert_eq!(results_after(72, 0), [225, 225]);
     let early_results = results_after(30, 0);
     assert!((80..160).contains(&early_results[0]), "{early_results:?}");
-    assert_eq!(early_results[1], 225, "the second conversion is right");
+    assert_eq!(early_results[1], 225, "the second conversion is correct");
     assert!(
         results_after(30, 5000)[0] > 400,
         "the result is between the previous channel and the bandgap"

@@ -132,7 +132,7 @@ fn an_eeprom_write_survives_a_brown_out_but_is_torn_below_1_8_v() {
 }
 
 #[test]
-fn the_watchdog_stands_still_while_the_supply_holds_the_chip_in_reset() {
+fn the_watchdog_is_stopped_while_the_supply_holds_the_chip_in_reset() {
     let body = "#include <avr/wdt.h>
         int main(void) { GPIOR0 = MCUSR; MCUSR = 0; wdt_enable(WDTO_15MS); for (;;) {} }";
     let mut uno = uno_with_program(body);
@@ -145,7 +145,7 @@ fn the_watchdog_stands_still_while_the_supply_holds_the_chip_in_reset() {
     uno.run_ms(10);
     assert_eq!(mark_values(&uno), [1, 8, 4, 8]);
 
-    // The watchdog also stands still if WDRF is still set, which switches the watchdog on at each reset.
+    // The watchdog is also stopped if WDRF is still set, which switches the watchdog on at each reset.
     let mut uno = uno_with_program(
         "#include <avr/wdt.h>
         int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }",

@@ -1,5 +1,5 @@
 //! Tests of disturbances of the simulated UNO: foreign interrupts, which have no source on the chip, a main program
-//! that makes no progress, registers written from outside.
+//! that makes no progress, and registers written from outside.
 
 use simulated_uno::Uno;
 use simulated_uno::avr_gcc::{assemble, compile_c};
@@ -102,7 +102,7 @@ fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
 }
 
 #[test]
-fn a_stalled_main_stands_still_while_interrupts_are_served() {
+fn a_stalled_main_does_not_run_while_interrupts_are_served() {
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(compile_c(COUNTING_PROGRAM), fidelity);
         uno.run_until_cycle(25_000);
@@ -123,7 +123,7 @@ fn a_stalled_main_stands_still_while_interrupts_are_served() {
 }
 
 #[test]
-fn a_poked_register_does_what_a_store_does() {
+fn a_poke_has_the_effect_of_a_store() {
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(assemble("sbi DDRB, 5\nend: rjmp end"), fidelity);
         uno.run_until_cycle(1000);

@@ -63,7 +63,7 @@ fn a_new_eeprom_is_erased_and_its_1024_bytes_can_be_set() {
 }
 
 #[test]
-fn registers_read_as_the_data_sheet_says() {
+fn registers_read_as_in_the_data_sheet() {
     for (message, body, expected) in [
         (
             // "EEAR9:0": the other bits always read as zero (8.6.1).
@@ -236,8 +236,8 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
 }
 
 #[test]
-fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
-    // Timer1 counts while the CPU is halted, so halts do not accumulate to a delay of its interrupt.
+fn a_timer_is_on_time_although_the_eeprom_halts_the_cpu() {
+    // Timer1 counts while the CPU is halted, so halts do not add up to a delay of its interrupt.
     let image = program(
         "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
         int main(void) {
@@ -247,7 +247,8 @@ fn a_timer_is_on_time_though_the_eeprom_halts_the_cpu() {
     );
     let counts = mark_values(&uno_after_ms(20, image));
     assert!(counts.len() > 150);
-    let spread = counts.iter().max().unwrap() - counts.iter().min().unwrap();
+    let (earliest, latest) = (counts.iter().min(), counts.iter().max());
+    let spread = latest.expect("there are counts") - earliest.expect("there are counts");
     assert!(spread <= 6, "{counts:?}"); // the longest instruction: sbi and its halt
 }
 
@@ -280,7 +281,7 @@ fn the_ready_interrupt_is_requested_as_long_as_eepe_is_zero() {
 }
 
 #[test]
-fn the_ready_interrupt_comes_at_once_and_again_after_one_instruction() {
+fn the_ready_interrupt_fires_at_once_and_again_after_one_instruction() {
     let uno = run(
         "jmp start
          .org 0x58                  ; EE_READY
@@ -353,6 +354,6 @@ fn stock_simavr_writes_at_once_and_never_reads_busy() {
     assert_eq!(
         uno.eeprom()[0],
         0x21,
-        "stock simavr writes in the mode erase only, too"
+        "stock simavr writes even in the erase-only mode"
     );
 }

@@ -56,7 +56,7 @@ fn a_file_that_begins_with_a_colon_is_read_as_hex() {
 }
 
 #[test]
-fn addresses_of_more_than_16_bits_and_gaps_are_understood() {
+fn addresses_of_more_than_16_bits_and_gaps_are_supported() {
     let text = [
         format_line(0x0010, 0, &[1]),
         format_line(0, 2, &[0x01, 0x00]),
@@ -73,7 +73,7 @@ fn addresses_of_more_than_16_bits_and_gaps_are_understood() {
 }
 
 #[test]
-fn each_fault_of_a_hex_file_is_reported() {
+fn each_error_in_a_hex_file_is_reported() {
     let good_line = format_line(0, 0, &[0xff, 0xcf]);
     for (text, error) in [
         (

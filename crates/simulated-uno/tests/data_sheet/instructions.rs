@@ -110,7 +110,7 @@ fn an_analogue_pin_has_an_arduino_number_and_a_name() {
 }
 
 #[test]
-fn the_level_of_an_analogue_pin_is_seen_and_toggled_alone() {
+fn the_level_of_an_analogue_pin_can_be_read_and_toggled_alone() {
     let image = assemble(
         "ldi r16, 0xff $ out DDRC, r16
          sbi PORTC, 0

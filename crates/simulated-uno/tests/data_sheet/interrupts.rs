@@ -37,7 +37,7 @@ const TICK_PROGRAM: &str = "
 ";
 
 #[test]
-fn a_compare_interrupt_from_sleep_costs_what_the_data_sheet_says() {
+fn a_compare_interrupt_from_sleep_takes_the_cycles_of_the_data_sheet() {
     // On the chip, the counter starts with the last cycle of the `sts` to TCCR1B; simavr starts it with the first
     // cycle. The counter matches 10 000 cycles later. Then follow 4 + 4 cycles of interrupt entry from sleep, 3 of the
     // vector's jmp, 1 of out.

@@ -35,19 +35,19 @@ fn unos_after(cycles: u64, image: &Image) -> [Uno; 2] {
 const CORRECTION_IS_OBSOLETE: &str =
     "stock simavr now follows the data sheet here: drop the correction";
 
-/// Returns a UNO with this program, corrected by the data sheet, at power-on.
+/// Returns a UNO of the data-sheet fidelity with this program, at power-on.
 fn new_uno(image: Image) -> Uno {
     Uno::with_image(image, Fidelity::DataSheet)
 }
 
-/// Returns a UNO with this program, corrected by the data sheet, after a number of cycles.
+/// Returns a UNO of the data-sheet fidelity with this program, after a number of cycles.
 fn uno_after(cycles: u64, image: Image) -> Uno {
     let mut uno = new_uno(image);
     uno.run_cycles(cycles);
     uno
 }
 
-/// Returns a UNO with this program, corrected by the data sheet, after a number of milliseconds.
+/// Returns a UNO of the data-sheet fidelity with this program, after a number of milliseconds.
 fn uno_after_ms(ms: u64, image: Image) -> Uno {
     uno_after(ms * CYCLES_PER_MS, image)
 }

@@ -63,7 +63,7 @@ fn software_clears_flags_of_mcusr_and_cannot_set_them() {
 }
 
 #[test]
-fn stock_simavr_forgets_every_cause_but_the_last() {
+fn stock_simavr_keeps_only_the_last_cause() {
     let mut uno = Uno::with_image(program_that_marks_mcusr(), Fidelity::Stock);
     uno.run_ms(1);
     reset_and_run(&mut uno);

@@ -8,7 +8,7 @@ use super::{
     unos_after,
 };
 
-/// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's rate.
+/// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's baud rate.
 const FRAME_CYCLES: f64 = 10.0 * 16_000_000.0 / 115_200.0;
 /// Cycles of a 10-bit frame that the UNO sends with UBRR = 16 and U2X: 136 cycles for each bit.
 const UNO_FRAME_CYCLES: u64 = 10 * 17 * 8;
@@ -190,7 +190,7 @@ fn a_wrong_baud_rate_is_a_framing_error() {
 }
 
 #[test]
-fn at_a_wrong_baud_rate_other_bytes_are_read() {
+fn at_a_wrong_baud_rate_different_bytes_are_read() {
     let byte_read_at = |baud| first_mark_at(baud, b'0', "GPIOR0 = get();");
     assert_eq!(byte_read_at(115_200.0), b'0');
     // '0' is 0b0011_0000. The UNO takes its eight samples while a sender with half its baud rate sends its start bit

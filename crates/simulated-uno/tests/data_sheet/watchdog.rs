@@ -45,7 +45,7 @@ fn run_once(body: &str, ms: u64) -> Uno {
     )
 }
 
-/// Returns the number of cycles from the mark number `mark_index` (from 0) to the first reset by the watchdog.
+/// Returns the number of cycles from the mark with this index to the first reset by the watchdog.
 fn cycles_to_reset(uno: &Uno, mark_index: usize) -> u64 {
     watchdog_reset_cycles(uno)[0] - uno.marks()[mark_index].cycle
 }
@@ -73,7 +73,7 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
 }
 
 #[test]
-fn the_time_out_is_counted_from_the_last_wdr_or_from_the_switching_on() {
+fn the_time_out_is_counted_from_the_last_wdr_or_from_the_moment_of_switching_on() {
     for (message, body, ms, mark, expected) in [
         (
             "wdr restarts the time-out",
@@ -138,7 +138,7 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
 }
 
 #[test]
-fn wdtcsr_reads_as_the_data_sheet_says() {
+fn wdtcsr_reads_as_in_the_data_sheet() {
     for (message, body, ms, expected) in [
         (
             "without the timed sequence, WDE is not cleared and the prescaler is not changed",
@@ -248,7 +248,7 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
     let uno = run(body, 128 + 40);
     assert_eq!(mark_values(&uno), [8, 8, 8, 8, 8, 8]);
     let reset_cycles = watchdog_reset_cycles(&uno);
-    // The reset comes at the end of the instruction in which the time-out occurs.
+    // The reset occurs at the end of the instruction in which the time-out occurs.
     assert!(
         (reset_cycles[1] - reset_cycles[0]).abs_diff(MIN_TIMEOUT_CYCLES) < 3,
         "{reset_cycles:?}"
@@ -311,7 +311,7 @@ fn an_interrupt_in_the_cycle_of_the_sleep_instruction_does_not_end_the_sleep() {
 }
 
 #[test]
-fn a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_divided() {
+fn a_watchdog_reset_occurs_at_the_same_cycle_however_the_run_is_divided() {
     let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
     let mut unbroken_uno = new_uno(image.clone());
     unbroken_uno.run_until_cycle(50 * CYCLES_PER_MS);
