@@ -1,10 +1,10 @@
 //! The cycles of a path.
 //!
 //! A distance per cycle means little without the phase at which a cycle starts: the body sways, so the forward
-//! direction depends on the phase. And a clock that is off by half a percent makes every cycle too long by as much.
-//! So both are fitted (`clock.rs`). Since pictures are some time apart, cycles are measured from one calm phase, at
-//! which the robot moves evenly, to the next. The displacement from the start of a cycle to its calm phase then converts
-//! the result to one that is measured from the start.
+//! direction depends on the phase. And a clock that is off by half a percent makes every cycle too long by as much. So
+//! both are fitted (`clock.rs`). Since pictures are some time apart, cycles are measured from one calm phase, at which
+//! the robot moves evenly, to the next. The displacement from the start of a cycle to its calm phase then converts the
+//! result to one that is measured from the start.
 
 use lizard_contact::{Place, Travel};
 

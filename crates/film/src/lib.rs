@@ -1,13 +1,13 @@
 //! Measuring the robot in a film: how far it moves in a cycle, and how accurate the result is.
 //!
-//! A camera looks down on the robot from anywhere. Tags on the floor show where the camera is, and a tag on the
-//! robot's deck, whose height is known, shows where the robot is ([`sheet`] defines the printed sheet of tags).
-//! [`Film::add`] reads the tags of each picture. [`Film::analyse`] finds the camera (`scene.rs`) and the robot's path
-//! (`path.rs`). [`AnalysedFilm::walks`] finds the walks between the robot's rests (`walks.rs`), and
-//! [`AnalysedFilm::match_gait`] the gait of a walk (`likeness.rs`). [`AnalysedFilm::measure`] finds the cycles of a walk
-//! (`cycles.rs`, `clock.rs`), their mean with its error (`mean.rs`) and the path within a cycle (`cycle_path.rs`). Two
-//! other measurements use the same tags: [`Slide`] is the friction of the pads, and [`MeasuredServo`] is the response
-//! of a single servo. The crate reads no file and prints nothing.
+//! A camera looks down on the robot from anywhere. Tags on the floor show where the camera is, and a tag on the robot's
+//! deck, whose height is known, shows where the robot is ([`sheet`] defines the printed sheet of tags). [`Film::add`]
+//! reads the tags of each picture. [`Film::analyse`] finds the camera (`scene.rs`) and the robot's path (`path.rs`).
+//! [`AnalysedFilm::walks`] finds the walks between the robot's rests (`walks.rs`), and [`AnalysedFilm::match_gait`] the
+//! gait of a walk (`likeness.rs`). [`AnalysedFilm::measure`] finds the cycles of a walk (`cycles.rs`, `clock.rs`),
+//! their mean with its error (`mean.rs`) and the path within a cycle (`cycle_path.rs`). Two other measurements use the
+//! same tags: [`Slide`] is the friction of the pads, and [`MeasuredServo`] is the response of a single servo. The crate
+//! reads no file and prints nothing.
 //!
 //! # When not to use it
 //! The crate measures one robot in one plane. For positions in space, or for many markers, use AprilTag's own library.

@@ -1,9 +1,9 @@
 //! The mean of a film's cycles and its standard error.
 //!
-//! The cycles of a robot differ by more than the error of a tag's position, so the spread of the cycles gives the
-//! error of their mean. The spread of a few cycles is itself uncertain. Student's t distribution gives the factor by
-//! which the error has to be enlarged so that the true value lies within two standard errors as often as for a film of
-//! many cycles.
+//! The cycles of a robot differ by more than the error of a tag's position, so the spread of the cycles gives the error
+//! of their mean. The spread of a few cycles is itself uncertain. Student's t distribution gives the factor by which
+//! the error has to be enlarged so that the true value lies within two standard errors as often as for a film of many
+//! cycles.
 //!
 //! Several walks of a gait may differ more from each other than the cycles of a walk do, since each starts at another
 //! place on the floor. Then the samples are the walks, not their cycles.

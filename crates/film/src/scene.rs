@@ -133,8 +133,8 @@ impl Scene {
         Camera::new(self.focal_length(), self.dimensions.picture_size, pose)
     }
 
-    /// Finds the camera's pose from the floor tags of a picture; `None` if no pose fits them, for example because
-    /// a tag is partly covered.
+    /// Finds the camera's pose from the floor tags of a picture; `None` if no pose fits them, for example because a tag
+    /// is partly covered.
     pub(crate) fn find_pose(&self, floor_corners: &FloorCorners) -> Option<Pose> {
         let start = estimate_pose(floor_corners, &self.dimensions, self.focal_length())?;
         let model = |pose: &[f64]| {

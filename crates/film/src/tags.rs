@@ -1,8 +1,8 @@
 //! Reading the tags of the sheet in a picture.
 //!
-//! [`read_tags`] finds dark quadrilaterals, refines their edges and reads their codes. Of the tag family's 587 codes, only
-//! those on the sheet are known here. In every orientation, any two of them differ in eleven squares or more, so a few
-//! misread squares do no harm.
+//! [`read_tags`] finds dark quadrilaterals, refines their edges and reads their codes. Of the tag family's 587 codes,
+//! only those on the sheet are known here. In every orientation, any two of them differ in eleven squares or more, so a
+//! few misread squares do no harm.
 
 use crate::blobs::{self, Quad};
 use crate::edges::{self, Square};

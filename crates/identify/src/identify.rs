@@ -18,9 +18,9 @@ use crate::way::MeasuredMovement;
 
 /// Indices in [`KEYS`] of the keys for which the model is least linear near the file's value.
 const NONLINEAR_KEYS: [usize; 3] = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX];
-/// Least distance from the file's value, in standard errors, at which a key takes its new value.
+/// Smallest distance from the file's value, in standard errors, at which a key takes its new value.
 const MIN_DISTANCE_ERRORS: f64 = 2.0;
-/// Lower bound for the rise of the sum of squares when a key is moved by [`MIN_DISTANCE_ERRORS`] standard errors. A
+/// Lower bound for the rise of the sum of squares when a key is shifted by [`MIN_DISTANCE_ERRORS`] standard errors. A
 /// smaller rise may be only roughness of the model. The bound limits the enlargement of an error to a factor of four.
 const MIN_RISE: f64 = 0.25;
 /// Largest standard error of a key that counts as determined, as a share of its prior standard deviation.
@@ -28,16 +28,16 @@ const MAX_ERROR_SHARE: f64 = 0.5;
 /// Correlation of errors above which two keys are reported as hard to distinguish.
 const MIN_CORRELATION: f64 = 0.8;
 
-/// A function that takes a count and a job. It runs the job for each index below the count, one after another or on all
-/// cores, and returns the results in order.
+/// A function that runs a job for each index below a count, one after another or on all cores, and returns the results
+/// in order.
 pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
 /// Identifies the keys of a robot from its measured movements. `run_all` runs the simulations of the gaits: a few
 /// hundred of about a tenth of a second each.
 ///
 /// # Errors
-/// Fails for a gait that the robot does not have or that moves no servo, for figures that are not finite or out of
-/// range, and if no movement determines a key.
+/// Fails for a gait that the robot does not have or that moves no servo, for measured values that are not finite or out
+/// of range, and if no movement determines a key.
 pub fn identify(
     robot: &Robot,
     movements: &[MeasuredMovement],
@@ -51,10 +51,10 @@ pub fn identify(
         if !gait.has_movement() {
             return Err(Trouble::MovesNoServo(movement.gait.clone()));
         }
-        let figures = movement.mean.iter().chain(&movement.error);
-        let are_all_finite = figures
+        let values = movement.mean.iter().chain(&movement.error);
+        let are_all_finite = values
             .chain([&movement.pace])
-            .all(|figure| figure.is_finite());
+            .all(|value| value.is_finite());
         if !are_all_finite
             || movement.pace <= 0.0
             || movement.error.iter().any(|error| *error < 0.0)
@@ -113,15 +113,15 @@ pub(crate) fn solve(
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
     let card_only_solution = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
     let card_only_fit = card_only_solution.ok_or(Trouble::NoFit)?;
-    let differences = problem
-        .differences(&last_fit.unknowns)
+    let residuals = problem
+        .residuals(&last_fit.unknowns)
         .into_iter()
         .enumerate();
-    let all_differences = differences.flat_map(|(movement, parts)| {
-        let parts = parts.into_iter().enumerate();
-        parts.map(move |(part, difference)| (movement, part, difference))
+    let indexed_residuals = residuals.flat_map(|(movement, components)| {
+        let components = components.into_iter().enumerate();
+        components.map(move |(component, residual)| (movement, component, residual))
     });
-    let largest_difference = all_differences.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    let largest_residual = indexed_residuals.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
     let new_values = split(&last_fit.unknowns).0;
     let key_result_of = |(i, key): (usize, &'static crate::Key)| KeyResult {
         key,
@@ -157,7 +157,7 @@ pub(crate) fn solve(
             chi_square_limit,
             is_explained,
             error_factor,
-            largest_difference: largest_difference.ok_or(Trouble::NothingDetermined)?,
+            largest_difference: largest_residual.ok_or(Trouble::NothingDetermined)?,
         },
         movements: measured_and_predicted.map(result_of).collect(),
     })
@@ -222,30 +222,30 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
 /// Standard errors of a fit of all unknowns.
 ///
 /// The errors from the derivatives are exact only for a linear model. The contact model has folds: a foot that is a
-/// little longer takes over a load, and an even longer foot changes nothing more. So each key is moved by two standard
-/// errors in both directions, and the other unknowns follow according to their correlation with the key. In a linear
-/// model the sum of squares rises by four. If it rises less, the error is enlarged accordingly.
+/// little longer takes over a load, and an even longer foot changes nothing more. So each key is shifted by two
+/// standard errors in both directions, and the other unknowns follow according to their correlation with the key. In a
+/// linear model the sum of squares rises by four. If it rises less, the error is enlarged accordingly.
 fn standard_errors(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
-    let least_cost = problem.cost(&full_fit.unknowns);
+    let min_cost = problem.cost(&full_fit.unknowns);
     std::array::from_fn(|i| {
         let error = full_fit.covariance[(i, i)].max(0.0).sqrt();
         if i >= KEY_COUNT || error > MAX_ERROR_SHARE * problem.prior_errors[i] {
             return error;
         }
         let rise_on_side = |side: f64| {
-            let moved_unknown_at = |j: usize| {
+            let shifted_unknown_at = |j: usize| {
                 full_fit.unknowns[j]
                     + side * MIN_DISTANCE_ERRORS * full_fit.covariance[(j, i)] / error
             };
-            problem.cost(&std::array::from_fn(moved_unknown_at)) - least_cost
+            problem.cost(&std::array::from_fn(shifted_unknown_at)) - min_cost
         };
         let rise = rise_on_side(1.0).min(rise_on_side(-1.0)).max(MIN_RISE);
         error * (MIN_DISTANCE_ERRORS / rise.sqrt()).max(1.0)
     })
 }
 
-/// Degrees of freedom of a fit of all unknowns: the number of figures minus, for each unknown, the share that the
-/// measurements determine instead of the prior.
+/// Degrees of freedom of a fit of all unknowns: the number of measured values minus, for each unknown, the share that
+/// the measurements determine instead of the prior.
 fn degrees_of_freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
     let shares = (0..UNKNOWN_COUNT)
         .map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
@@ -303,11 +303,14 @@ fn next_key_to_hold(
     if distance_of(nearest_key) < MIN_DISTANCE_ERRORS {
         return Some((nearest_key, Verdict::Unchanged));
     }
-    let low_key = free_keys().find(|&i| unknowns[i] < KEYS[i].min_value)?;
-    Some((low_key, Verdict::Impossible(unknowns[low_key])))
+    let infeasible_key = free_keys().find(|&i| unknowns[i] < KEYS[i].min_value)?;
+    Some((
+        infeasible_key,
+        Verdict::Impossible(unknowns[infeasible_key]),
+    ))
 }
 
-/// Holds a key at the file's value, and moves the other unknowns according to their correlation with the key.
+/// Holds a key at the file's value, and shifts the other unknowns according to their correlation with the key.
 fn hold(
     key: usize,
     start: &[f64; UNKNOWN_COUNT],
@@ -335,8 +338,8 @@ fn correlated_pairs(
         let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
         (&KEYS[i], &KEYS[j], covariance[(i, j)] / scale)
     });
-    let is_high = |(_, _, correlation): &(_, _, f64)| correlation.abs() > MIN_CORRELATION;
-    correlated.filter(is_high).collect()
+    let is_strong = |(_, _, correlation): &(_, _, f64)| correlation.abs() > MIN_CORRELATION;
+    correlated.filter(is_strong).collect()
 }
 
 #[cfg(test)]

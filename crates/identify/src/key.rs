@@ -20,8 +20,9 @@ pub struct Key {
     /// Step of the numerical derivative: large compared with the roughness of the model, and small compared with its
     /// curvature.
     pub(crate) derivative_step: f64,
-    /// Least possible value.
+    /// Smallest possible value.
     pub(crate) min_value: f64,
+    /// The number's place in the ground of a robot.
     field: fn(&mut Ground) -> &mut f64,
 }
 
@@ -118,7 +119,7 @@ pub(crate) const TWIST_INDEX: usize = 4;
 pub(crate) const FRICTION_RATIO_INDEX: usize = 6;
 
 impl Key {
-    /// The name with its index, as in `body.centre[0]`.
+    /// The name with its index, such as `body.centre[0]`.
     pub fn full_name(&self) -> String {
         match self.list_index {
             Some(index) => format!("{}[{index}]", self.name),
@@ -148,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_key_has_a_plausible_range_in_which_its_step_is_small() {
+    fn every_key_has_a_plausible_range_much_wider_than_its_derivative_step() {
         for key in KEYS {
             assert!(
                 key.prior_error() >= 5.0 * key.derivative_step,
@@ -157,7 +158,7 @@ mod tests {
                 key.prior_error()
             );
         }
-        let names = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX].map(|key| KEYS[key].name);
+        let names = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX].map(|index| KEYS[index].name);
         assert_eq!(
             names,
             [

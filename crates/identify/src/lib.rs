@@ -1,13 +1,13 @@
 //! Identification of a built robot: finds the values of robot.toml with which the contact model moves like the robot.
 //!
-//! Some keys are assumptions until the robot stands on its floor: the play of its legs, the grain of its pads, a
-//! foot that is too long, the mass centre, the mounting of the legs. A film shows how far the robot moves in a
-//! cycle of a gait. Each key changes the gaits in different proportions, so several gaits together determine the
-//! keys. [`identify`] finds them by weighted least squares ([`KEYS`] lists them), together with the position of the
-//! tag's card on the deck ([`Card`]); an error of that position would otherwise look like drift.
+//! Some keys are assumptions until the robot stands on its floor: the play of its legs, the grain of its pads, a foot
+//! that is too long, the mass centre, the mounting of the legs. A film shows how far the robot moves in a cycle of a
+//! gait. Each key changes the gaits in different proportions, so several gaits together determine the keys.
+//! [`identify`] finds the keys that [`KEYS`] lists by weighted least squares, together with the place of the card with
+//! the tag on the deck ([`Card`]); an error of that place would otherwise look like drift.
 //!
-//! A key that the movements do not determine keeps its value. A key whose standard error stays above half of its
-//! prior standard deviation counts as undetermined ([`Verdict::Undetermined`]). A key that would move by less than two
+//! A key that the movements do not determine keeps its value. A key whose standard error stays above half of its prior
+//! standard deviation counts as undetermined ([`Verdict::Undetermined`]). A key that would change by less than two
 //! standard errors counts as correct ([`Verdict::Unchanged`]). If the model deviates from the movements by more than
 //! their errors, the errors of all keys grow in proportion ([`Goodness`]). [`Identified::updated_robot_toml`] writes
 //! the new robot.toml.
@@ -19,7 +19,7 @@
 //! single friction ratio.
 //!
 //! # Units
-//! mm and degrees; movements are those of one cycle, in the robot's frame at the beginning of the cycle.
+//! mm and degrees; movements are those of one cycle, in the robot's frame at the start of the cycle.
 
 mod card;
 mod chi_square;

@@ -9,7 +9,7 @@ use crate::way::MeasuredMovement;
 pub struct Identified {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<KeyResult>,
-    /// The place of the card, then the standard errors of this place.
+    /// Estimated place of the card, then the standard errors of this place.
     pub card: [Card; 2],
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
     pub correlated_pairs: Vec<(&'static Key, &'static Key, f64)>,
@@ -26,7 +26,7 @@ pub struct KeyResult {
     pub key: &'static Key,
     /// Value in the file.
     pub file_value: f64,
-    /// Value with which the model fits the measurements best; the file's value if the verdict is not
+    /// Value with which the model fits the measurements best; the file's value unless the verdict is
     /// [`Verdict::Moved`].
     pub new_value: f64,
     /// Standard error of the value that the measurements determine.
@@ -44,37 +44,39 @@ pub enum Verdict {
     Unchanged,
     /// The measurements do not determine the key: its standard error stays above half of its prior standard deviation.
     Undetermined,
-    /// The measurements require this value, which is below the least possible value; the file's value stays.
+    /// The measurements require this value, which is below the smallest possible value; the file's value stays.
     Impossible(f64),
 }
 
 /// Agreement of the model with the measured movements.
 #[derive(Clone, Copy, Debug)]
 pub struct Goodness {
-    /// Number of measured figures.
+    /// Number of measured values.
     pub figure_count: usize,
-    /// Sum of squares of the differences in standard errors: with the file's values, with the new values, and
-    /// with all keys free.
+    /// Sums of the squared residuals, each residual in units of its standard error: with the file's values, with the
+    /// new values, and with all keys free.
     pub chi_squares: [f64; 3],
-    /// Degrees of freedom: the number of figures, minus the number that the fit of all keys uses.
+    /// Degrees of freedom: the number of measured values minus the effective number of parameters in the fit of all
+    /// keys.
     pub degrees_of_freedom: f64,
     /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
     pub chi_square_limit: f64,
     /// True if the model explains the measurements: with all keys free, the sum of squares is not above the limit
     /// that 1 % of correct models exceed, or there is no degree of freedom.
     pub is_explained: bool,
-    /// Factor by which all errors were widened.
+    /// Factor by which all standard errors were multiplied because the model fits badly (Birge ratio); 1 for a good
+    /// fit.
     pub error_factor: f64,
-    /// Index of the movement, index of the part, and value of the largest difference with the new values, in standard
-    /// errors.
+    /// Index of the movement, index of the component, and value of the largest residual with the new values, in
+    /// standard errors.
     pub largest_difference: (usize, usize, f64),
 }
 
 /// A measured movement and the predictions of the model.
 #[derive(Clone, Debug)]
 pub struct MovementResult {
-    /// The measured movement. A part has an infinite error and no weight if the model cannot predict it, because two
-    /// feet pull against the other two.
+    /// The measured movement. A component has an infinite error and no weight if the model cannot predict it, because
+    /// two feet pull against the other two.
     pub measured: MeasuredMovement,
     /// The model's movement with the file's values.
     pub predicted_before: [f64; 3],
@@ -91,7 +93,7 @@ impl Identified {
 }
 
 impl KeyResult {
-    /// Number of decimals of the value that shows two digits of the standard error.
+    /// Number of decimals at which the standard error has two significant digits.
     pub fn decimal_count(&self) -> usize {
         let first_digit_decimal = -self.error.log10().floor();
         (first_digit_decimal + 1.0).clamp(0.0, 6.0) as usize

@@ -1,5 +1,4 @@
-//! The least-squares problem: differences between measured movements and those of the model, in units of their
-//! standard errors.
+//! The least-squares problem: residuals of the measured movements against the model, in units of their standard errors.
 //!
 //! The model takes tens of milliseconds for one movement. So each result is stored, and derivatives with respect to
 //! the keys are reused for values near those at which they were computed. Prior knowledge counts as a measurement:
@@ -23,12 +22,12 @@ pub(crate) const UNKNOWN_COUNT: usize = KEY_COUNT + card::PARAMETER_COUNT;
 /// Standard deviation of the model's roughness around a smooth model, mm and deg: servos have a dead band and pads
 /// stick, so a small change of a key may shift a step of the gait by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
-/// Least predicted reduction of the sum of squares for which a fit takes another step. At the end of a fit, each
+/// Smallest predicted reduction of the sum of squares for which a fit takes another step. At the end of a fit, each
 /// unknown is then within a third of its standard error.
-const MIN_PROMISED_GAIN: f64 = 0.1;
+const MIN_PREDICTED_REDUCTION: f64 = 0.1;
 /// Largest predicted reduction for which a step without any gain is attributed to the model's roughness and not to
 /// wrong derivatives.
-const ROUGHNESS_GAIN: f64 = 2.0;
+const MAX_ROUGHNESS_REDUCTION: f64 = 2.0;
 /// Largest number of iterations of a fit.
 const MAX_ITERATIONS: usize = 12;
 /// Largest number of halvings of a step that does not reduce the sum of squares.
@@ -40,12 +39,13 @@ const REUSE_STEPS_AT_END: f64 = 1.0;
 
 /// The measured movements of a robot, and a model of it.
 pub(crate) struct Problem<'a> {
-    /// The measured movements. Parts that the model leaves undetermined have an infinite error.
+    /// The measured movements. Components that the model leaves undetermined have an infinite error.
     movements: &'a [MeasuredMovement],
     /// The file's values.
     pub file_values: Values,
     /// Prior standard deviations of the unknowns.
     pub prior_errors: [f64; UNKNOWN_COUNT],
+    /// The model: predicts the movements for values of the keys.
     predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     /// Results of the model for all values so far.
     cached_results: RefCell<Vec<(Values, Vec<Travel>)>>,
@@ -82,13 +82,13 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Number of measured figures with a finite error.
+    /// Number of measured values with a finite error.
     pub fn figure_count(&self) -> usize {
         let errors = self.movements.iter().flat_map(|movement| movement.error);
         errors.filter(|error| error.is_finite()).count()
     }
 
-    /// Start values of the unknowns: the file's keys, and a card exactly in its nominal place.
+    /// Start values of the unknowns: the file's values of the keys, and a card exactly in its nominal place.
     pub fn start_unknowns(&self) -> [f64; UNKNOWN_COUNT] {
         std::array::from_fn(|i| self.file_values.get(i).copied().unwrap_or_default())
     }
@@ -103,44 +103,46 @@ impl<'a> Problem<'a> {
             .collect()
     }
 
-    /// Differences of the measured movements from those of the model, in standard errors.
-    pub fn differences(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
-        self.divide_by_errors(&self.predicted_on_card(unknowns), |part, mean| mean - part)
+    /// Residuals of the movements, measured minus predicted, in standard errors.
+    pub fn residuals(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
+        self.divide_by_errors(&self.predicted_on_card(unknowns), |predicted, mean| {
+            mean - predicted
+        })
     }
 
-    /// Sum of squares that a fit of all unknowns minimises: differences of movements, and deviations from the prior
+    /// Sum of squares that a fit of all unknowns minimises: residuals of the movements, and deviations from the prior
     /// values.
     pub fn cost(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> f64 {
-        let differences = self.differences(unknowns).into_flattened();
+        let residuals = self.residuals(unknowns).into_flattened();
         let start = self.start_unknowns();
         let prior_deviations =
             (0..UNKNOWN_COUNT).map(|i| (unknowns[i] - start[i]) / self.prior_errors[i]);
-        differences
+        residuals
             .into_iter()
             .chain(prior_deviations)
-            .map(|difference| difference * difference)
+            .map(|residual| residual * residual)
             .sum()
     }
 
-    /// Combines each predicted part with the measured one by `combine`, and divides the result by its standard error,
-    /// which includes the model's roughness.
+    /// Combines each predicted component with the measured one by `combine`, and divides the result by its standard
+    /// error, which includes the model's roughness.
     fn divide_by_errors(
         &self,
-        parts: &[[f64; 3]],
+        predicted: &[[f64; 3]],
         combine: impl Fn(f64, f64) -> f64,
     ) -> Vec<[f64; 3]> {
-        let rows = self.movements.iter().zip(parts);
-        let divided_row_of = |(movement, parts): (&MeasuredMovement, &[f64; 3])| {
+        let rows = self.movements.iter().zip(predicted);
+        let divided_row_of = |(movement, predicted): (&MeasuredMovement, &[f64; 3])| {
             std::array::from_fn(|i| {
-                combine(parts[i], movement.mean[i]) / movement.error[i].hypot(MODEL_ERROR)
+                combine(predicted[i], movement.mean[i]) / movement.error[i].hypot(MODEL_ERROR)
             })
         };
         rows.map(divided_row_of).collect()
     }
 
     /// The movements of the robot that the model predicts. No robot has negative play, but a fit may try it: then the
-    /// fit of a robot without play can err in both directions. The movements for negative play are extrapolated as
-    /// 2 f(0) - f(-play). Other keys are raised to their least values.
+    /// fit of a robot without play can err in both directions. The movements for negative play are extrapolated as 2
+    /// f(0) - f(-play). Other keys are raised to their smallest possible values.
     fn robot_travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY_INDEX] < 0.0 {
             let travels_with_play = |play: f64| {
@@ -161,17 +163,18 @@ impl<'a> Problem<'a> {
                 .collect();
         }
         let values = raise_to_min_values(*values);
-        let has_these_values = |(known_values, _): &&(Values, Vec<Travel>)| *known_values == values;
+        let has_these_values =
+            |(cached_values, _): &&(Values, Vec<Travel>)| *cached_values == values;
         if let Some((_, travels)) = self.cached_results.borrow().iter().find(has_these_values) {
             return travels.clone();
         }
         let travels = (self.predict)(&values);
-        let mut computed = self.cached_results.borrow_mut();
-        computed.push((values, travels.clone()));
+        let mut cached_results = self.cached_results.borrow_mut();
+        cached_results.push((values, travels.clone()));
         travels
     }
 
-    /// Fits the free unknowns, beginning with a guess; the other unknowns keep their start values.
+    /// Fits the free unknowns, starting from a guess; the other unknowns keep their start values.
     ///
     /// The method is Gauss-Newton; a step that does not reduce the sum of squares is halved. A finer search is useless,
     /// since the model is rough: servos have a dead band and pads stick.
@@ -182,13 +185,13 @@ impl<'a> Problem<'a> {
             unknowns[unknown] = guess[unknown];
         }
         let residuals_at = |unknowns: &[f64; UNKNOWN_COUNT]| {
-            let differences = self.differences(unknowns).into_flattened().into_iter();
+            let movement_residuals = self.residuals(unknowns).into_flattened().into_iter();
             let prior_deviations = free_unknowns
                 .iter()
                 .map(|&i| (unknowns[i] - start[i]) / self.prior_errors[i]);
             DVector::from_iterator(
                 3 * self.movements.len() + free_unknowns.len(),
-                differences.chain(prior_deviations),
+                movement_residuals.chain(prior_deviations),
             )
         };
         let mut current_residuals = residuals_at(&unknowns);
@@ -198,9 +201,10 @@ impl<'a> Problem<'a> {
             let gradient = jacobian.tr_mul(&current_residuals);
             covariance = jacobian.tr_mul(&jacobian).cholesky()?.inverse();
             let step = &covariance * &gradient;
-            let promised_gain = step.dot(&gradient);
-            if promised_gain < MIN_PROMISED_GAIN {
-                // The standard errors follow from the derivatives, so these must be from near the end of the fit.
+            let predicted_reduction = step.dot(&gradient);
+            if predicted_reduction < MIN_PREDICTED_REDUCTION {
+                // The standard errors follow from the derivatives, so the derivatives must be from near the end of the
+                // fit.
                 match self.discard_distant_jacobian(split(&unknowns).0, REUSE_STEPS_AT_END) {
                     true => continue,
                     false => break,
@@ -219,15 +223,15 @@ impl<'a> Problem<'a> {
             match better_steps.next() {
                 Some(next_step) => (unknowns, current_residuals) = next_step,
                 // Derivatives from another point may give a wrong direction.
-                None if promised_gain > ROUGHNESS_GAIN
+                None if predicted_reduction > MAX_ROUGHNESS_REDUCTION
                     && self.discard_distant_jacobian(split(&unknowns).0, 0.0) => {}
                 None if self.discard_distant_jacobian(split(&unknowns).0, REUSE_STEPS_AT_END) => {}
                 None => break,
             }
         }
-        let differences = self.differences(&unknowns).into_flattened();
-        let chi_square: f64 = differences.iter().map(|part| part * part).sum();
-        let is_finite = chi_square.is_finite() && covariance.iter().all(|part| part.is_finite());
+        let residuals = self.residuals(&unknowns).into_flattened();
+        let chi_square: f64 = residuals.iter().map(|residual| residual * residual).sum();
+        let is_finite = chi_square.is_finite() && covariance.iter().all(|value| value.is_finite());
         is_finite.then_some(Solution {
             unknowns,
             covariance,
@@ -262,13 +266,13 @@ impl<'a> Problem<'a> {
         );
         for (column, &unknown) in free_unknowns.iter().enumerate() {
             let step = KEYS.get(unknown).map_or(0.1, |key| key.derivative_step);
-            let mut moved_unknowns = base;
-            moved_unknowns[unknown] += step;
-            let moved_movements = self.predicted_on_card(&moved_unknowns);
+            let mut shifted_unknowns = base;
+            shifted_unknowns[unknown] += step;
+            let shifted_movements = self.predicted_on_card(&shifted_unknowns);
             let slopes: Vec<[f64; 3]> = base_movements
                 .iter()
-                .zip(&moved_movements)
-                .map(|(base, moved)| std::array::from_fn(|i| (base[i] - moved[i]) / step))
+                .zip(&shifted_movements)
+                .map(|(base, shifted)| std::array::from_fn(|i| (base[i] - shifted[i]) / step))
                 .collect();
             let scaled_slopes = self
                 .divide_by_errors(&slopes, |slope, _| slope)
@@ -290,7 +294,7 @@ impl<'a> Problem<'a> {
         {
             return point;
         }
-        // At a key's least value, the derivatives are those of its feasible side.
+        // At a key's smallest value, the derivatives are those of its feasible side.
         let values = raise_to_min_values(values);
         *jacobian_point = Some(values);
         values
@@ -303,7 +307,7 @@ fn is_within(step_count: f64, a: Values, b: Values) -> bool {
     pairs.all(|((a, b), key)| (a - b).abs() <= step_count * key.derivative_step)
 }
 
-/// Raises each value to the least possible value of its key.
+/// Raises each value to the smallest possible value of its key.
 fn raise_to_min_values(values: Values) -> Values {
     std::array::from_fn(|i| values[i].max(KEYS[i].min_value))
 }

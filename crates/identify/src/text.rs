@@ -10,7 +10,7 @@ impl Identified {
     /// unchanged.
     ///
     /// # Errors
-    /// Fails if the text has no place for a key, or if the robot with the new values is refused.
+    /// Fails if the text does not contain a key, or if the robot with the new values is refused.
     pub fn updated_robot_toml(&self, text: &str) -> Result<String, Trouble> {
         let mut new_text = text.to_owned();
         let mut names: Vec<&str> = self.moved_keys().map(|result| result.key.name).collect();
@@ -25,7 +25,7 @@ impl Identified {
     }
 }
 
-/// Writes the value of a key, which is one number or a list, with a comment about the numbers that moved.
+/// Writes the value of a key, which is one number or a list, with a comment about the numbers that changed.
 fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::NoSuchKey> {
     let name = results[0].key.name;
     let values: Vec<f64> = results
@@ -36,19 +36,21 @@ fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::NoSuchK
         Some(_) => edit::with_numbers(text, name, &values)?,
         None => edit::with_number(text, name, values[0])?,
     };
-    let moved_results = results.iter().filter(|result| result.is_moved());
-    let comments: Vec<String> = moved_results.map(|result| result.comment_text()).collect();
+    let changed_results = results.iter().filter(|result| result.is_changed());
+    let comments: Vec<String> = changed_results
+        .map(|result| result.comment_text())
+        .collect();
     edit::with_comment(&new_text, name, "measured:", &comments.join("; "))
 }
 
 impl KeyResult {
-    fn is_moved(&self) -> bool {
+    fn is_changed(&self) -> bool {
         self.verdict == crate::Verdict::Moved
     }
 
-    /// The value for the new file, rounded if it moved.
+    /// The value for the new file, rounded if it changed.
     fn written_value(&self) -> f64 {
-        if !self.is_moved() {
+        if !self.is_changed() {
             return self.file_value;
         }
         let scale = 10f64.powi(self.decimal_count() as i32);

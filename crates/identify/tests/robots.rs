@@ -1,4 +1,4 @@
-//! A test that deliberately changed keys are identified from simulated movements, for each robot of `robots/`.
+//! A test of the identification of deliberately changed keys from simulated movements, for each robot of `robots/`.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -12,7 +12,7 @@ const MEAN_ERROR: f64 = 0.03;
 /// Number of gaits that are filmed.
 const GAIT_COUNT: usize = 8;
 /// Size of the change of each key, in the order of `KEYS`. A robot gets up to three of these changes, up or down.
-const CHANGES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
+const CHANGE_SIZES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
 fn change_key(ground: &mut Ground, key: usize, change: f64) {
     let value = match key {
@@ -41,9 +41,10 @@ fn run_sequentially(count: usize, simulate: &(dyn Fn(usize) -> Travel + Sync)) -
 fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let speed_of = |gait: &CheckedGait| {
         let prediction = robot.predict(gait);
-        let [ahead, turn] =
-            [prediction.forward, prediction.turn].map(|part| part.unwrap_or(0.0).abs());
-        (ahead + turn) / gait.period()
+        let [forward, turn] =
+            [prediction.forward, prediction.turn].map(|component| component.unwrap_or(0.0).abs());
+        // A rough measure: mm and deg count the same.
+        (forward + turn) / gait.period()
     };
     let mut gaits: Vec<&CheckedGait> = robot
         .gaits()
@@ -62,7 +63,8 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
         MeasuredMovement {
             gait: gait.name().to_owned(),
             pace: 1.0,
-            mean: [forward, left, turn].map(|part| part + MEAN_ERROR * normal_deviate(rng)),
+            mean: [forward, left, turn]
+                .map(|component| component + MEAN_ERROR * normal_deviate(rng)),
             error: [MEAN_ERROR; 3],
         }
     };
@@ -80,14 +82,15 @@ impl Trial {
     fn new(path: &Path, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let robot =
-            Robot::parse(&std::fs::read_to_string(path).expect("a robot")).expect("a valid robot");
+            Robot::parse(&std::fs::read_to_string(path).expect("the robot file is readable"))
+                .expect("the robot file is valid");
         let mut ground = *robot.ground();
         let mut changes = [0.0; 7];
         for _ in 0..3 {
-            let key = rng.usize(..CHANGES.len());
+            let key = rng.usize(..CHANGE_SIZES.len());
             // Play cannot become negative.
             let sign = if key == 1 || rng.bool() { 1.0 } else { -1.0 };
-            changes[key] = sign * CHANGES[key];
+            changes[key] = sign * CHANGE_SIZES[key];
         }
         for (key, change) in changes.into_iter().enumerate() {
             change_key(&mut ground, key, change);
@@ -96,7 +99,9 @@ impl Trial {
         Self {
             name: format!(
                 "{} {seed}",
-                path.file_stem().expect("a name").to_string_lossy()
+                path.file_stem()
+                    .expect("the path has a file name")
+                    .to_string_lossy()
             ),
             changes,
             identified: identify(&robot, &movements, &run_sequentially)
@@ -112,11 +117,11 @@ impl Trial {
 /// Run by `make measure-test`.
 #[test]
 #[ignore = "takes minutes; make measure-test"]
-fn changed_keys_are_found_within_two_errors_and_correct_keys_stay() {
+fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
-        .expect("the robots")
-        .map(|file| file.expect("a file").path())
+        .expect("the folder robots/ is readable")
+        .map(|file| file.expect("the folder entry is readable").path())
         .collect();
     files.sort();
     assert_eq!(files.len(), 5);
@@ -135,9 +140,12 @@ fn changed_keys_are_found_within_two_errors_and_correct_keys_stay() {
         };
         let threads: Vec<_> = variants.map(start_trial).collect();
         let trials = threads.into_iter().map(|thread| thread.join());
-        trials.map(|trial| trial.expect("a trial")).collect()
+        trials
+            .map(|trial| trial.expect("the trial does not panic"))
+            .collect()
     });
-    let (mut changed_count, mut near_count, mut unchanged_count, mut moved_count) = (0, 0, 0, 0);
+    let (mut changed_count, mut hit_count, mut unchanged_count, mut false_change_count) =
+        (0, 0, 0, 0);
     for trial in &trials {
         let goodness = &trial.identified.goodness;
         println!(
@@ -146,43 +154,45 @@ fn changed_keys_are_found_within_two_errors_and_correct_keys_stay() {
         );
         for (change, result) in trial.changes_and_results() {
             let shift = result.new_value - result.file_value;
-            let is_near = (shift - change).abs() < 2.0 * result.error;
+            let is_hit = (shift - change).abs() < 2.0 * result.error;
             println!(
                 "  {:<34} {change:+.3}: {shift:+.3} +- {:.3} {:?}{}",
                 result.key.full_name(),
                 result.error,
                 result.verdict,
-                if is_near { "" } else { " !" }
+                if is_hit { "" } else { " !" }
             );
             if result.verdict == Verdict::Undetermined {
                 continue;
             }
             match change == 0.0 {
                 true => {
-                    (unchanged_count, moved_count) =
-                        (unchanged_count + 1, moved_count + usize::from(shift != 0.0))
+                    (unchanged_count, false_change_count) = (
+                        unchanged_count + 1,
+                        false_change_count + usize::from(shift != 0.0),
+                    )
                 }
                 false => {
-                    (changed_count, near_count) =
-                        (changed_count + 1, near_count + usize::from(is_near))
+                    (changed_count, hit_count) =
+                        (changed_count + 1, hit_count + usize::from(is_hit))
                 }
             }
         }
     }
     println!(
-        "{near_count} of {changed_count} changed keys within two errors, {moved_count} of {unchanged_count} correct keys moved"
+        "{hit_count} of {changed_count} changed keys within two standard errors, {false_change_count} of {unchanged_count} correct keys changed"
     );
     assert!(
         changed_count >= 12 && unchanged_count >= 20,
         "{changed_count} {unchanged_count}"
     );
     assert!(
-        near_count as f64 >= 0.9 * f64::from(changed_count),
-        "{near_count} of {changed_count}"
+        hit_count as f64 >= 0.9 * f64::from(changed_count),
+        "{hit_count} of {changed_count}"
     );
     assert!(
-        moved_count as f64 <= 0.1 * f64::from(unchanged_count),
-        "{moved_count} of {unchanged_count}"
+        false_change_count as f64 <= 0.1 * f64::from(unchanged_count),
+        "{false_change_count} of {unchanged_count}"
     );
-    assert_eq!(KEYS.len(), CHANGES.len());
+    assert_eq!(KEYS.len(), CHANGE_SIZES.len());
 }

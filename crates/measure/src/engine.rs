@@ -16,14 +16,16 @@ const FIGURES_JSON: &str = include_str!("../../../tools/physics/figures.json");
 /// The key of the results without play, without lag, and with feet of equal length.
 const RIGID_CASE: &str = "rigid, level";
 
+/// The results for a gait in a case.
 #[derive(Deserialize)]
 struct EngineMovements {
-    /// Movement per cycle: mm ahead, mm to the left, deg.
+    /// Movement per cycle: mm forward, mm to the left, deg counter-clockwise.
     mujoco: [f64; 3],
 }
 
-/// The movement per cycle of a gait at full pace: mm ahead, mm to the left, deg. `None` if `robot_text`, apart from
-/// comments, is not the file of one of the project's own robots, or if there is no result for the gait.
+/// The movement per cycle of a gait at full pace: mm forward, mm to the left, deg counter-clockwise. `None` if
+/// `robot_text`, apart from comments, is not the file of one of the project's own robots, or if there is no result for
+/// the gait.
 pub fn mujoco_movement(robot_text: &str, gait: &str) -> Option<[f64; 3]> {
     let (robot, _) = ROBOT_FILES.into_iter().find(|(_, file_text)| {
         lines_without_comments(file_text).eq(lines_without_comments(robot_text))

@@ -33,7 +33,7 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// A walk of a film, with its gait as measured.
+/// A walk in a film, and its measured gait.
 #[derive(Debug)]
 pub struct MeasuredWalk<'f> {
     pub(crate) walk: Walk<'f>,
@@ -90,7 +90,7 @@ impl<'a> Gaits<'a> {
     ///
     /// # Errors
     /// Fails with a message for the user if several gaits are named and their number is not that of the walks, if a
-    /// walk does not clearly resemble a gait, or if a walk does not fit its gait.
+    /// walk does not clearly match a gait, or if a walk does not fit its gait.
     pub fn measure_walks<'f>(
         &self,
         films: &'f [NamedFilm],
@@ -160,11 +160,10 @@ impl<'a> Gaits<'a> {
         })
     }
 
-    /// Recognises the gait of a walk and returns its index; fails with a message if the walk resembles no
-    /// gait, or two.
+    /// Recognises the gait of a walk and returns its index; fails with a message if the walk matches no gait, or two.
     fn recognise_gait(&self, walk: Walk) -> Result<usize, String> {
         let name_of = |index: usize| self.all_candidates()[index].name();
-        let (reason, has_hint) = match self.match_gait(walk) {
+        let (reason, needs_names) = match self.match_gait(walk) {
             GaitMatch::Unique(index) => return Ok(index),
             GaitMatch::Ambiguous { best, second_best } => (
                 format!(
@@ -180,7 +179,7 @@ impl<'a> Gaits<'a> {
             ),
             GaitMatch::NoMatch(trouble) => (trouble.to_string(), false),
         };
-        let hint = match has_hint {
+        let hint = match needs_names {
             true => "; name the gait of each walk",
             false => "",
         };
@@ -199,26 +198,25 @@ impl<'a> Gaits<'a> {
             .match_gait(&predicted_gaits, walk.interval)
     }
 
-    /// Finds the name of the gait that a walk clearly resembles; `None` if it resembles no gait, or two.
-    pub(crate) fn find_resembled_gait(&self, walk: Walk) -> Option<&'a str> {
+    /// Finds the name of the gait that a walk clearly matches; `None` if it matches no gait, or two.
+    pub(crate) fn find_matching_gait(&self, walk: Walk) -> Option<&'a str> {
         match self.match_gait(walk) {
             GaitMatch::Unique(index) => Some(self.all_candidates()[index].name()),
             _ => None,
         }
     }
 
-    /// The message for a walk that does not fit its gait, with the gait that it resembles instead.
+    /// The message for a walk that does not fit its gait, with the gait that it matches instead.
     fn mismatch_message(&self, walk: Walk, candidate: &Candidate, trouble: Trouble) -> String {
-        let resembled_name = match trouble {
+        let matching_name = match trouble {
             Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => {
-                self.find_resembled_gait(walk)
+                self.find_matching_gait(walk)
             }
             _ => None,
         };
-        let resembled_name = resembled_name.filter(|name| *name != candidate.name());
-        let resemblance_text =
-            resembled_name.map_or(String::new(), |name| format!("; it is like {name}"));
-        format!("{trouble}{resemblance_text}")
+        let matching_name = matching_name.filter(|name| *name != candidate.name());
+        let match_text = matching_name.map_or(String::new(), |name| format!("; it is like {name}"));
+        format!("{trouble}{match_text}")
     }
 
     /// The message for films whose number of walks differs from the number of names.
@@ -233,19 +231,19 @@ impl<'a> Gaits<'a> {
         let mut unmatched_names = names;
         let mut are_all_matched = true;
         for walk in walks {
-            let resembled_name = self.find_resembled_gait(*walk);
+            let matching_name = self.find_matching_gait(*walk);
             let [from, to] = walk.interval;
             let _ = write!(
                 text,
                 "\n  {}, {:.1} s long: like {}",
                 walk.label(),
                 to - from,
-                resembled_name.unwrap_or("no gait clearly")
+                matching_name.unwrap_or("no gait clearly")
             );
-            match resembled_name.and_then(|resembled_name| {
+            match matching_name.and_then(|matching_name| {
                 unmatched_names
                     .iter()
-                    .position(|name| *name == resembled_name)
+                    .position(|name| *name == matching_name)
             }) {
                 Some(index) => {
                     unmatched_names.remove(index);

@@ -1,21 +1,21 @@
-//! One part of a movement (distance ahead, distance to the left, or turn) beside its prediction.
+//! A component of a movement (forward, left or turn) beside its prediction.
 
 use lizard_film::Mean;
 use serde::Serialize;
 
 /// Largest difference from the prediction, in standard errors, that counts as agreement.
 pub const MAX_AGREEING_ERRORS: f64 = 2.0;
-/// The names of a movement's parts, with their units.
+/// The names of a movement's components, with their units.
 pub const PART_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
-/// One part of a movement.
+/// A measured component of a movement, beside its prediction.
 #[derive(Debug, Serialize)]
 pub struct Part {
     /// The mean, mm or deg.
     pub mean: f64,
-    /// Standard deviation of single cycles.
+    /// Standard deviation of single cycles, mm or deg.
     sd: f64,
-    /// Standard error of the mean.
+    /// Standard error of the mean, mm or deg.
     pub error: f64,
     /// The prediction; `None` if it is undetermined because two feet pull against the other two.
     pub predicted: Option<f64>,
@@ -58,7 +58,7 @@ impl Part {
         self.differs.map_or("-".to_owned(), verdict)
     }
 
-    /// The part's line of a table.
+    /// The component's line of a table.
     pub(crate) fn line(&self, name: &str) -> String {
         let predicted = self
             .predicted

@@ -11,17 +11,17 @@ pub fn predict_gait(robot: &Robot, gait: &CheckedGait, pace: f64) -> Gait {
     let frames_per_cycle = (period * FRAMES_PER_SECOND).round().max(1.0) as usize;
     let mut twin = Twin::new(robot, ServoModel::of(robot));
     let mut path = Vec::with_capacity(frames_per_cycle + 1);
-    let mut begin_place = Place::START;
+    let mut start_place = Place::START;
     for frame in 0..=2 * frames_per_cycle {
         let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
         let phase = (gait.phase_at(seconds) * 65536.0).round() as i64;
         let angles = gait.table_angles(phase.rem_euclid(65536) as u16);
         let place = twin.push_angles(angles).place;
         if frame == frames_per_cycle {
-            begin_place = place;
+            start_place = place;
         }
         if frame >= frames_per_cycle {
-            let travel = place.travel_from(begin_place);
+            let travel = place.travel_from(start_place);
             path.push(Place {
                 forward: travel.forward,
                 left: travel.left,

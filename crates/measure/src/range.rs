@@ -5,19 +5,19 @@ use serde::Serialize;
 
 use crate::part::PART_NAMES;
 
-/// The smallest and the largest predicted movement per cycle, ahead or in turn, while one assumption at a time is set
-/// to either end of its plausible range.
+/// The smallest and the largest predicted movement per cycle, forward or as a turn, while one assumption at a time is
+/// set to either end of its plausible range.
 #[derive(Debug, Serialize)]
 pub(crate) struct PredictionRange {
-    /// The part of the movement, one of [`PART_NAMES`].
+    /// The component of the movement, one of [`PART_NAMES`].
     part: &'static str,
     /// The smallest predicted movement, mm or deg.
     least: f64,
     /// The largest predicted movement, mm or deg.
     most: f64,
-    /// The assumption whose change gives `least`; null if all are as in robot.toml.
+    /// The assumption whose change gives `least`; null if it is the prediction by robot.toml.
     least_by: Option<&'static str>,
-    /// The assumption whose change gives `most`; null if all are as in robot.toml.
+    /// The assumption whose change gives `most`; null if it is the prediction by robot.toml.
     most_by: Option<&'static str>,
 }
 
@@ -25,13 +25,13 @@ impl PredictionRange {
     /// Computes the range of a gait at a pace, which is a multiple of the gait's own.
     pub(crate) fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let movement_range = MovementRange::of(robot, gait, pace);
-        let [least_end, most_end] = [movement_range.smallest, movement_range.largest];
+        let (smallest, largest) = (movement_range.smallest, movement_range.largest);
         Self {
             part: PART_NAMES[if movement_range.is_turn { 2 } else { 0 }],
-            least: least_end.movement,
-            most: most_end.movement,
-            least_by: least_end.assumption,
-            most_by: most_end.assumption,
+            least: smallest.movement,
+            most: largest.movement,
+            least_by: smallest.assumption,
+            most_by: largest.assumption,
         }
     }
 

@@ -40,7 +40,7 @@ pub struct GaitReport<'a> {
     pub gait: &'a str,
     /// Pace, percent of the gait's own.
     speed: u8,
-    walks: Vec<Span<'a>>,
+    walks: Vec<WalkLine<'a>>,
     /// Number of complete cycles.
     pub cycles: usize,
     /// Mean duration of a cycle, s.
@@ -49,9 +49,9 @@ pub struct GaitReport<'a> {
     period_error: f64,
     /// Duration of a cycle by robot.toml, s.
     period_expected: f64,
-    /// Distance ahead in a cycle, mm, in the robot's frame at the beginning of the cycle.
+    /// Distance forward in a cycle, mm, in the robot's frame at the start of the cycle.
     pub forward: Part,
-    /// Drift to the left in a cycle, mm.
+    /// Distance to the left in a cycle, mm.
     pub left: Part,
     /// Turn in a cycle, deg, counter-clockwise positive.
     pub turn: Part,
@@ -59,9 +59,9 @@ pub struct GaitReport<'a> {
     each: Vec<CycleMovement>,
     /// The mean path within a cycle, beside the predicted one.
     pub within: Vec<PhasePoint>,
-    /// The largest deviation of that path from the predicted one; null if no part of the movement is predicted.
+    /// The largest deviation of that path from the predicted one; null if no component of the movement is predicted.
     farthest: Option<LargestDeviation>,
-    /// Movement per cycle according to MuJoCo with ideal servos: mm ahead and to the left, deg.
+    /// Movement per cycle according to MuJoCo with ideal servos: mm forward, mm to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
     /// Range of the prediction if one assumption is wrong.
@@ -74,13 +74,13 @@ pub struct GaitReport<'a> {
 
 /// A walk between two rests.
 #[derive(Debug, Serialize)]
-struct Span<'a> {
+struct WalkLine<'a> {
     film: &'a str,
     /// Start of the walk in the film, s; includes a part of the rest before it.
     from: f64,
     /// End of the walk in the film, s; includes a part of the rest after it.
     to: f64,
-    /// The gait of robot.toml that the path clearly resembles, if it is not the walk's own.
+    /// The gait of robot.toml that the path clearly matches, if it is not the walk's own.
     #[serde(skip_serializing_if = "Option::is_none")]
     like: Option<&'a str>,
 }
@@ -90,11 +90,11 @@ struct Span<'a> {
 pub struct PhasePoint {
     /// Phase of the cycle, 0 to 1.
     phase: f64,
-    /// Distance ahead since the beginning of the cycle, mm.
+    /// Distance forward since the start of the cycle, mm.
     pub forward: Part,
-    /// Distance to the left since the beginning of the cycle, mm.
+    /// Distance to the left since the start of the cycle, mm.
     pub left: Part,
-    /// Turn since the beginning of the cycle, deg.
+    /// Turn since the start of the cycle, deg, counter-clockwise positive.
     pub turn: Part,
 }
 
@@ -137,39 +137,39 @@ struct CameraLine {
     deck_by_size: f64,
 }
 
-impl<'a> Span<'a> {
+impl<'a> WalkLine<'a> {
     fn new(
         gaits: &Gaits<'a>,
-        named_walk: &MeasuredWalk<'a>,
+        measured_walk: &MeasuredWalk<'a>,
         differs_from_prediction: bool,
     ) -> Self {
-        let [from, to] = named_walk.walk.interval;
-        let name = gaits.candidates()[named_walk.candidate_index].name();
-        // The likeness matters only if the walk differs from its prediction.
-        let resembled_name = if differs_from_prediction {
-            gaits.find_resembled_gait(named_walk.walk)
+        let [from, to] = measured_walk.walk.interval;
+        let name = gaits.candidates()[measured_walk.candidate_index].name();
+        // Another gait matters only if the walk differs from its prediction.
+        let matching_name = if differs_from_prediction {
+            gaits.find_matching_gait(measured_walk.walk)
         } else {
             None
         };
         Self {
-            film: &named_walk.walk.film.name,
+            film: &measured_walk.walk.film.name,
             from,
             to,
-            like: resembled_name.filter(|resembled_name| *resembled_name != name),
+            like: matching_name.filter(|matching_name| *matching_name != name),
         }
     }
 }
 
 impl LargestDeviation {
-    /// The point with the largest deviation, in standard errors, among the parts of the movement that are predicted.
+    /// The largest deviation, in standard errors, among the components of the movement that are predicted.
     fn of(points: &[CyclePoint], predicted: [Option<f64>; 3]) -> Option<Self> {
         let deviations = points.iter().flat_map(|point| {
             let differs = point.standardised_differences();
             (0..3).map(move |axis| (point, axis, differs[axis]))
         });
-        let known_deviations = deviations.filter(|(_, axis, _)| predicted[*axis].is_some());
+        let predicted_deviations = deviations.filter(|(_, axis, _)| predicted[*axis].is_some());
         let (point, axis, differs) =
-            known_deviations.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
+            predicted_deviations.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
         Some(Self {
             phase: point.phase,
             part: PART_NAMES[axis],
@@ -234,8 +234,8 @@ impl<'a> GaitReport<'a> {
             .any(|part| part.agrees == Some(false));
         let phase_point_of = |point: &CyclePoint| {
             let part_of = |i: usize| {
-                let known_value = predicted_values[i].is_some().then_some(point.predicted[i]);
-                Part::new(point.measured[i], known_value)
+                let predicted_value = predicted_values[i].is_some().then_some(point.predicted[i]);
+                Part::new(point.measured[i], predicted_value)
             };
             PhasePoint {
                 phase: point.phase,
@@ -254,7 +254,7 @@ impl<'a> GaitReport<'a> {
             speed,
             walks: walks
                 .iter()
-                .map(|walk| Span::new(gaits, walk, differs_from_prediction))
+                .map(|walk| WalkLine::new(gaits, walk, differs_from_prediction))
                 .collect(),
             cycles: measured_gait.cycles.len(),
             period: measured_gait.period.value,
@@ -276,7 +276,7 @@ impl<'a> GaitReport<'a> {
         }
     }
 
-    /// The parts of the movement.
+    /// The components of the movement: forward, left and turn.
     pub fn parts(&self) -> [&Part; 3] {
         [&self.forward, &self.left, &self.turn]
     }
@@ -286,7 +286,7 @@ impl<'a> GaitReport<'a> {
             "\n{} at {} %: {} whole cycles of {:.3} s (by robot.toml {:.3} s)\n",
             self.gait, self.speed, self.cycles, self.period, self.period_expected,
         );
-        for Span {
+        for WalkLine {
             film,
             from,
             to,
@@ -331,25 +331,25 @@ impl<'a> Report<'a> {
             let candidate = &gaits.candidates()[walk.candidate_index];
             match walks_by_gait
                 .iter_mut()
-                .find(|(other, _)| other.name() == candidate.name())
+                .find(|(known, _)| known.name() == candidate.name())
             {
                 Some((_, walks)) => walks.push(walk),
                 None => walks_by_gait.push((candidate, vec![walk])),
             }
         }
         let film_line_of = |film: &'a NamedFilm| {
-            let sight = &film.analysis.camera;
+            let camera = &film.analysis.camera;
             FilmLine {
                 film: &film.name,
                 pictures: film.analysis.path.len(),
                 camera: CameraLine {
-                    height: sight.height,
-                    tilt: sight.tilt,
-                    focal: sight.focal_length,
-                    corners: sight.corner_error,
-                    moved: sight.has_camera_moved,
+                    height: camera.height,
+                    tilt: camera.tilt,
+                    focal: camera.focal_length,
+                    corners: camera.corner_error,
+                    moved: camera.has_camera_moved,
                     deck: setup.deck_height,
-                    deck_by_size: sight.deck_height,
+                    deck_by_size: camera.deck_height,
                 },
             }
         };
@@ -381,19 +381,19 @@ impl<'a> Report<'a> {
         self
     }
 
-    /// The tables, for people.
+    /// The report as tables, for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        for line in &self.films {
-            let camera = &line.camera;
+        for film in &self.films {
+            let camera = &film.camera;
             let movement_text = if camera.moved { ", moving" } else { "" };
             let _ = writeln!(
                 text,
                 "{}: {} pictures\n\
                  camera {:.0} mm above the floor{movement_text}, {:.0} deg from straight down; corners to {:.2} px\n\
                  deck's tag {:.0} mm above the floor, by its size {:.0} mm",
-                line.film,
-                line.pictures,
+                film.film,
+                film.pictures,
                 camera.height,
                 camera.tilt,
                 camera.corners,

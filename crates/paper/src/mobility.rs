@@ -12,11 +12,11 @@ use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
-/// Singular values below this share of the largest singular value count as zero. This share still finds a singular pose
-/// that is typed with seven digits.
+/// Singular values below this share of the largest singular value count as zero. With this share, a singular pose is
+/// still found if its angles are typed with seven digits.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// Links slower than this share of the fastest link count as standing still.
+/// Largest speed of a link that counts as standing still, as a share of the fastest link's speed.
 const MAX_STILL_SPEED: f64 = 1e-3;
 
 /// The unit of length, mm, which makes lengths comparable with angles in radians.
@@ -25,6 +25,7 @@ const LENGTH_UNIT_MM: f64 = 50.0;
 /// A mechanism: joints that connect links. Link 0 is fixed.
 struct Mechanism {
     name: &'static str,
+    /// Number of links, including link 0.
     link_count: usize,
     joints: Vec<Joint>,
     /// The numbers of the links that a servo drives.
@@ -82,7 +83,7 @@ pub fn measure(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
     let legs = (0..4).map(|i| leg_mechanism(lizard, solution, i, leg_names[i]));
     std::iter::once(body)
         .chain(legs)
-        .map(|mechanism| Mobility::of(&mechanism))
+        .map(|mechanism| Mobility::compute(&mechanism))
         .collect()
 }
 
@@ -176,7 +177,7 @@ pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
     count_freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
 }
 
-/// Returns a mechanism's degrees of freedom with unlocked servos, by rank.
+/// A mechanism's degrees of freedom with unlocked servos, by rank.
 fn count_freedoms(mechanism: &Mechanism) -> usize {
     let free_jacobian = constraint_jacobian(mechanism, &[]);
     free_jacobian.ncols() - rank_of(&free_jacobian.singular_values())
@@ -184,7 +185,7 @@ fn count_freedoms(mechanism: &Mechanism) -> usize {
 
 impl Mobility {
     /// Counts and measures one mechanism.
-    fn of(mechanism: &Mechanism) -> Self {
+    fn compute(mechanism: &Mechanism) -> Self {
         let joints = mechanism.joints.len();
         let free_jacobian = constraint_jacobian(mechanism, &[]);
         let (constraints, velocities) = free_jacobian.shape();

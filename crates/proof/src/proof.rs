@@ -12,7 +12,7 @@ use crate::walk;
 pub struct Proof {
     /// The findings for ends, sides and legs.
     pub findings: Vec<Finding>,
-    /// Hash that identifies the robot's numbers.
+    /// Hash that identifies the robot's numbers in the firmware.
     pub hash: u32,
     /// Distance from a margin's limit within which the decisions may differ, a sine.
     pub margin_band: f64,
@@ -33,7 +33,7 @@ impl Proof {
         Self::from_tallies(robot, guard, tallies)
     }
 
-    /// Makes the proof from the tallies of all pieces, in the order of the pieces.
+    /// Assembles the proof from the tallies of all pieces, in the order of the pieces.
     pub fn from_tallies(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Self {
         Self {
             findings: walk::findings(robot, guard, tallies),

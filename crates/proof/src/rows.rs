@@ -1,5 +1,5 @@
-//! The rows and columns of pairs of positions: rows are distributed over all cores, columns are computed eight at a
-//! time.
+//! The rows and columns of pairs of positions: rows are distributed over all cores, and the columns of a row are
+//! computed eight at a time.
 
 use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{Lanes, Vector};
@@ -56,27 +56,27 @@ pub fn tally_rows(
         .reduce(Tally::default, Tally::merged)
 }
 
-/// Calls `visit` with the columns of a row, eight at a time, and with the number of valid columns; the last column is
-/// repeated to fill the eight.
-pub fn for_each_eight(
+/// Calls `visit` with the columns of a row, [`LANES`] at a time, and with the number of valid columns; the last column
+/// is repeated to fill the group.
+pub fn for_each_lane_group(
     mut columns: impl Iterator<Item = usize>,
     mut visit: impl FnMut([usize; LANES], usize),
 ) {
     loop {
-        let mut eight = [0; LANES];
+        let mut group = [0; LANES];
         let mut valid_count = 0;
         for column in columns.by_ref().take(LANES) {
-            eight[valid_count..].fill(column);
+            group[valid_count..].fill(column);
             valid_count += 1;
         }
         if valid_count == 0 {
             return;
         }
-        visit(eight, valid_count);
+        visit(group, valid_count);
     }
 }
 
-/// Gathers the vectors of eight columns.
+/// Gathers the vectors of a group of columns, one for each lane.
 #[inline]
 pub fn gather_lanes(vectors: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>> {
     Vector::new(

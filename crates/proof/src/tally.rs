@@ -15,15 +15,15 @@ pub const LENGTH_BAND_STEPS: f64 = 4.0;
 /// [`MARGIN_BAND`] or, if that is larger, the angle by which an error of [`LENGTH_BAND_STEPS`] steps of `step_mm` turns
 /// the couplers. That angle is large if the couplers are nearly in line: it is proportional to the reciprocal of the
 /// sine of the angle between them, which is at least `min_type2`.
-pub fn margin_band(bars: &FiveBar, min_type2: f64, step_mm: f64) -> f64 {
-    let (left, right) = (bars.left_coupler_length, bars.right_coupler_length);
-    let max_tip_distance =
-        (left + right).min(bars.base + bars.left_crank_length + bars.right_crank_length);
+pub fn margin_band(five_bar: &FiveBar, min_type2: f64, step_mm: f64) -> f64 {
+    let (left, right) = (five_bar.left_coupler_length, five_bar.right_coupler_length);
+    let max_tip_distance = (left + right)
+        .min(five_bar.base + five_bar.left_crank_length + five_bar.right_crank_length);
     let angle_per_mm = (max_tip_distance / (left * right)).max(1.0 / left.min(right));
     MARGIN_BAND.max(LENGTH_BAND_STEPS * step_mm * angle_per_mm / min_type2)
 }
 
-/// The tally of one end, one side or one leg: errors of the guard's values, and decisions that differ.
+/// The tally of an end, a side or a leg: errors of the guard's values, and decisions that differ.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// The number of pairs of positions that were compared.
@@ -51,7 +51,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Raises `largest` to `value` if that is larger.
+    /// Raises `largest` to `value` if `value` is larger.
     #[inline(always)]
     pub fn raise(largest: &mut Option<f64>, value: f64) {
         if largest.is_none_or(|largest| value > largest) {

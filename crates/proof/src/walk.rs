@@ -27,7 +27,7 @@ pub struct GuardComparison<'a> {
 }
 
 impl<'a> GuardComparison<'a> {
-    /// Makes a comparison at a sample of the pairs.
+    /// Creates the comparison over a sample of the pairs.
     pub fn new(robot: &'a Robot, guard: &'a CoreRobot, sample: PairSample) -> Self {
         Self {
             robot,
@@ -38,6 +38,7 @@ impl<'a> GuardComparison<'a> {
         }
     }
 
+    /// The positions of the servo with this index, 0 to 3.
     fn positions(&self, servo: usize) -> &Positions {
         self.positions[servo].get_or_init(|| Positions::of(self.guard, servo))
     }
@@ -59,7 +60,7 @@ impl<'a> GuardComparison<'a> {
     }
 }
 
-/// Makes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
+/// Computes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
 pub fn findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Finding> {
     let mut tallies = tallies.into_iter();
     let mut next_part_tally = || {

@@ -51,8 +51,8 @@ impl Comparison {
     /// Simulates both gaits on the judge's robots, at paces at which their fastest servos turn at `rate` (deg/s).
     pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found_gait: &BuiltGait) -> Self {
         // At another pace the gait covers the same distance, so only its period changes.
-        let pace_factor = gait.audit().peak_speed.speed / rate;
-        let (given, given_speeds) = GaitFigures::of(judge, gait, pace_factor);
+        let period_factor = gait.audit().peak_speed.speed / rate;
+        let (given, given_speeds) = GaitFigures::of(judge, gait, period_factor);
         let (tuned, tuned_speeds) = GaitFigures::of(judge, found_gait.gait(), 1.0);
         let faster_count = tuned_speeds
             .iter()
@@ -83,24 +83,24 @@ impl Comparison {
 }
 
 impl GaitFigures {
-    /// Simulates a gait whose period is multiplied by `pace_factor`; also returns its speed on each robot.
-    fn of(judge: &Judge, gait: &CheckedGait, pace_factor: f64) -> (Self, Vec<f64>) {
-        let period = gait.period() * pace_factor;
+    /// Simulates a gait whose period is multiplied by `period_factor`; also returns its speed on each robot.
+    fn of(judge: &Judge, gait: &CheckedGait, period_factor: f64) -> (Self, Vec<f64>) {
+        let period = gait.period() * period_factor;
         let audit = gait.audit();
         let margins = [audit.type2, audit.type1, audit.leg];
-        let least_margin = margins.into_iter().fold(audit.leg, |least, margin| {
-            if margin.value < least.value {
+        let min_margin = margins.into_iter().fold(audit.leg, |smallest, margin| {
+            if margin.value < smallest.value {
                 margin
             } else {
-                least
+                smallest
             }
         });
         let speeds = judge.speeds(gait, period);
         let figures = Self {
             name: gait.name().to_owned(),
             period,
-            rate: audit.peak_speed.speed / pace_factor,
-            margin: (Check::name(least_margin.check), least_margin.value),
+            rate: audit.peak_speed.speed / period_factor,
+            margin: (Check::name(min_margin.check), min_margin.value),
             predicted: judge.goal().progress(&judge.simulate_ideal_cycle(gait)) / period,
             sg90: judge.speed_on_robot(gait, period),
             speeds: quantiles(speeds.clone(), [0.05, 0.5, 0.95]),

@@ -122,10 +122,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_goal_is_the_movement_of_its_gait() {
-        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+    fn the_goal_of_a_gait_is_the_direction_of_its_movement() {
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         let goal_of = |name: &str| {
-            let gait = robot.gait(name).expect(name);
+            let gait = robot.gait(name).expect("paper.toml has the gait");
             Goal::of(gait, robot.ground()).map_err(|error| error.to_string())
         };
         assert_eq!(goal_of("walk"), Ok(Goal::Ahead(1.0)));
@@ -137,14 +138,23 @@ mod tests {
             ("arc-left", "goes ahead and turns"),
             ("look", "is undecided"),
         ] {
-            assert!(goal_of(name).expect_err(name).contains(reason), "{name}");
+            assert!(
+                goal_of(name)
+                    .expect_err("the gait has no goal")
+                    .contains(reason),
+                "{name}"
+            );
         }
     }
 
     #[test]
-    fn in_a_turn_to_the_left_the_left_legs_push_against_the_others() {
+    fn in_a_turn_left_and_right_legs_push_in_opposite_directions() {
         let signs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).stroke_sign(servo));
-        assert_eq!(signs, [-1.0, 1.0, 1.0, -1.0], "as robot.toml's gain has it");
+        assert_eq!(
+            signs,
+            [-1.0, 1.0, 1.0, -1.0],
+            "as in the `gain` of robot.toml"
+        );
         let pairs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).pair_index(servo));
         assert_eq!(pairs[0], pairs[2]);
         assert_eq!(pairs[1], pairs[3]);

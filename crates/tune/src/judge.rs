@@ -1,5 +1,5 @@
-//! The score of a gait. The gait is computed and checked like any gait of robot.toml, at the pace at which its
-//! fastest servo reaches the speed limit. Then the gait is simulated on random robots.
+//! The score of a gait. The gait is computed and checked like any gait of robot.toml, at the pace at which its fastest
+//! servo reaches the speed limit. Then the gait is simulated on random robots.
 
 use lizard_robot::{Bars, CheckedGait, Ground, Robot, Travel};
 use lizard_twin::ServoModel;
@@ -29,7 +29,7 @@ pub struct BuiltGait {
 
 impl BuiltGait {
     /// Builds a gait with the shortest period at which no servo is faster than `max_rate` (deg/s). Returns `None` if
-    /// the gait breaks a limit of the robot, or if that period is longer than [`MAX_PERIOD_S`].
+    /// the gait violates a limit of the robot, or if that period is longer than [`MAX_PERIOD_S`].
     pub(crate) fn of(robot: &Robot, bars: &Bars, max_rate: f64) -> Option<Self> {
         let build = |period: f64| {
             let bars = Bars {
@@ -64,7 +64,7 @@ impl BuiltGait {
     /// Finds the largest amplitude, deg, at which a wave gait with the first start parameters of the search is within
     /// the robot's limits.
     pub(crate) fn find_max_amplitude(robot: &Robot, goal: Goal, max_rate: f64) -> f64 {
-        let can_walk = |max_amplitude: f64| {
+        let is_within_limits = |max_amplitude: f64| {
             let start = &GaitKind::Wave.start_parameters()[0];
             let bars = plan_gait(
                 GaitKind::Wave,
@@ -80,7 +80,7 @@ impl BuiltGait {
         let (mut low, mut high) = AMPLITUDE_BOUNDS;
         while high - low > 0.2 {
             let middle = f64::midpoint(low, high);
-            if can_walk(middle) {
+            if is_within_limits(middle) {
                 low = middle;
             } else {
                 high = middle;
@@ -180,7 +180,7 @@ mod tests {
     use super::*;
 
     fn paper_robot() -> Robot {
-        Robot::parse(include_str!("../../../robots/paper.toml")).expect("right")
+        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
     }
 
     fn wave_bars(max_amplitude: f64, amplitude_share: f64) -> Bars {
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn the_legs_of_the_papers_robot_swing_as_wide_as_their_margin_allows() {
+    fn the_largest_amplitude_of_the_papers_robot_is_the_one_that_its_leg_margin_allows() {
         // sin(41.41 deg - amplitude) = 0.3.
         let max_amplitude = BuiltGait::find_max_amplitude(&paper_robot(), Goal::Ahead(1.0), 262.0);
         assert!(
@@ -207,11 +207,11 @@ mod tests {
     }
 
     #[test]
-    fn a_gait_uses_the_servo_speed_that_is_allowed() {
+    fn a_built_gait_uses_the_servo_speed_that_is_allowed() {
         let robot = paper_robot();
         let bars = wave_bars(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {
-            let built = BuiltGait::of(&robot, &bars, rate).expect("it walks");
+            let built = BuiltGait::of(&robot, &bars, rate).expect("the gait is within the limits");
             assert!(
                 built.peak_rate() <= rate && built.peak_rate() > 0.97 * rate,
                 "{rate} {}",
@@ -234,16 +234,16 @@ mod tests {
             ("walk", Goal::Ahead(1.0), 28.0),
             ("left", Goal::Turn(1.0), 13.0),
         ] {
-            let gait = robot.gait(name).expect(name);
+            let gait = robot.gait(name).expect("paper.toml has the gait");
             let judge = Judge::new(&robot, robot.ground(), goal, 20, 0);
-            let score = judge.score(gait).expect("it moves towards its goal");
+            let score = judge.score(gait).expect("the gait moves towards its goal");
             let robot_speed = judge.speed_on_robot(gait, gait.period());
             assert!(
                 min_score < score && score < robot_speed,
                 "{name} {score} {robot_speed}"
             );
         }
-        let walk = robot.gait("walk").expect("walk");
+        let walk = robot.gait("walk").expect("paper.toml has the gait");
         let turn_judge = Judge::new(&robot, robot.ground(), Goal::Turn(1.0), 2, 0);
         assert_eq!(turn_judge.score(walk), None);
     }

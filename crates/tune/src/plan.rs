@@ -1,4 +1,4 @@
-//! The parameters of the search, numbers from 0 to 1, and the gaits that they describe.
+//! The parameters of the search, which are numbers from 0 to 1, and the gaits that they describe.
 //!
 //! A straight gait is symmetrical in Hildebrand's sense (*Symmetrical gaits of horses*, Science 150, 1965): each leg
 //! repeats the movement of the other leg of its pair half a cycle later, so the body walks straight. The pairs of a

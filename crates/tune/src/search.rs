@@ -1,6 +1,6 @@
-//! Differential evolution (R. Storn, K. Price, *Journal of Global Optimization* 11, 1997), with steps towards one
-//! of the best members (J. Zhang, A. Sanderson, *IEEE Transactions on Evolutionary Computation* 13, 2009). The
-//! method needs no gradient, accepts refused trials, and is short.
+//! Differential evolution (R. Storn, K. Price, *Journal of Global Optimization* 11, 1997), with steps towards one of
+//! the best members (J. Zhang, A. Sanderson, *IEEE Transactions on Evolutionary Computation* 13, 2009). The method
+//! needs no gradient, copes with refused trials, and is short.
 //!
 //! The search does not compute scores: its caller takes the trials of a round, scores them in any order, and
 //! returns the scores. Random numbers come from one seed in a fixed order, so the same seed finds the same gait on
@@ -62,8 +62,8 @@ impl Search {
         &self.trials
     }
 
-    /// Takes the scores of this round's trials, in the order of [`Search::trials`], and makes the trials of the next
-    /// round. A trial counts as refused if its score is `None` or missing.
+    /// Accepts the scores of this round's trials, in the order of [`Search::trials`], and creates the trials of the
+    /// next round. A trial counts as refused if its score is `None` or missing.
     pub fn accept_scores(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
         let scores = scores.into_iter().chain(std::iter::repeat(None));
         let trials = std::mem::take(&mut self.trials).into_iter().zip(scores);
@@ -78,11 +78,11 @@ impl Search {
             }
         }
         let rng = &mut self.rng;
-        let trial_of = |index| make_trial(&self.members, index, rng);
+        let trial_of = |index| create_trial(&self.members, index, rng);
         self.trials = (0..self.members.len()).map(trial_of).collect();
     }
 
-    /// The scores and parameters of the present members, the best first.
+    /// The scores and parameters of the current members, the best first.
     pub fn ranked_results(&self) -> Vec<(f64, Vec<f64>)> {
         let members = self.members.iter();
         let scored = members.filter_map(|member| Some((member.score?, member.parameters.clone())));
@@ -96,10 +96,10 @@ fn score_of(member: &Member) -> f64 {
     member.score.unwrap_or(f64::NEG_INFINITY)
 }
 
-/// Makes a trial from the member with this index: a step towards one of the best members plus a step along the
-/// difference of two other members, crossed with the member itself. A parameter that would leave the range 0 to 1
-/// moves halfway to the bound instead.
-fn make_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
+/// Creates a trial from the member with this index: a step towards one of the best members plus a step along the
+/// difference of two other members, crossed with the member itself. A parameter that would leave the range 0 to 1 moves
+/// halfway to the bound instead.
+fn create_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
     let own_parameters = &members[index].parameters;
     let mut ranked_members: Vec<&Member> = members.iter().collect();
     ranked_members.sort_by(|a, b| score_of(b).total_cmp(&score_of(a)));

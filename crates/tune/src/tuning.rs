@@ -54,6 +54,7 @@ pub struct Tuning {
     gait: CheckedGait,
     /// Name for the gaits that the search finds.
     found_gait_name: String,
+    /// Largest speed of a servo, deg/s.
     rate: f64,
     space: SearchSpace,
     judge: Judge,
@@ -112,7 +113,7 @@ impl Tuning {
     }
 
     /// Scores a gait by the speed that it exceeds on 95 % of the random robots, mm/s or deg/s. `None` if the gait
-    /// breaks a limit of the robot, or if its movement has a component in another direction than the goal's. The call
+    /// violates a limit of the robot, or if its movement has a component in another direction than the goal's. The call
     /// takes a few hundredths to a few tenths of a second.
     pub fn score(&self, kind: GaitKind, parameters: &[f64]) -> Option<f64> {
         self.judge.score(self.build(kind, parameters)?.gait())
@@ -125,7 +126,7 @@ impl Tuning {
         candidates
             .iter()
             .filter_map(|candidate| self.build(candidate.kind, &candidate.parameters))
-            .find(|built| built.gait().predict(&self.ground).is_decided())
+            .find(|candidate| candidate.gait().predict(&self.ground).is_decided())
     }
 
     /// Compares the gait that was found with the given gait, on random robots that the search has not used.

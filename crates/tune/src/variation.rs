@@ -6,15 +6,20 @@ use lizard_robot::{
 };
 use lizard_twin::{FRAME_S, ServoModel};
 
-/// Number of phases in a cycle.
+/// Number of the firmware's phase steps in a cycle.
 const PHASES_PER_CYCLE: f64 = 65536.0;
 
 /// Range of the random factor on the friction of robot.toml.
 pub const FRICTION_FACTORS: (f64, f64) = (0.5, 1.5);
+/// Range of the random factor on the load of each pad, and on the ratio of backward to forward friction.
 const PAD_FACTORS: (f64, f64) = (0.9, 1.1);
+/// Largest random shift of the mass centre in each direction.
 const MAX_CENTRE_SHIFT_MM: f64 = 8.0;
+/// Largest random change of the legs' mounting angle.
 const MAX_MOUNT_SHIFT_DEG: f64 = 4.0;
+/// Largest random shift of the hips in each direction.
 const MAX_HIP_SHIFT_MM: f64 = 2.0;
+/// Range of the random factor on the force and on the rate of the springs.
 const SPRING_FACTORS: (f64, f64) = (0.8, 1.2);
 /// Range of the factor on the stiffness of the feet's leaves. Stiffness grows with the cube of the thickness, and the
 /// thickness of a print is within one fifteenth of the intended one.
@@ -41,7 +46,7 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// Draws a random robot and floor around this ground from a seed.
+    /// Draws a random robot and floor around this ground; the seed determines them.
     pub fn of(ground: &Ground, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let mut draw_within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
@@ -93,7 +98,7 @@ impl Variation {
         }
     }
 
-    /// Adds random play to the legs, with which a simulation takes longer.
+    /// Adds random play to the legs. A simulation with play takes longer.
     #[must_use]
     pub fn with_play(mut self, seed: u64) -> Self {
         // A separate random sequence for the play leaves all other values unchanged.
@@ -182,8 +187,9 @@ mod tests {
 
     #[test]
     fn walk_moves_forward_on_nearly_every_robot_and_floor() {
-        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
-        let walk = robot.gait("walk").expect("walk");
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
+        let walk = robot.gait("walk").expect("paper.toml has the gait");
         let movements: Vec<Travel> = (0..40)
             .map(|seed| {
                 Variation::of(robot.ground(), seed).simulate_cycle(&robot, walk, ServoModel::SG90)
@@ -201,28 +207,29 @@ mod tests {
     #[test]
     fn uneven_feet_slow_a_walk_only_if_they_are_stiff() {
         let text = include_str!("../../../robots/paper.toml");
-        let slow_forward = |feet: &str| {
-            let robot = Robot::parse(&format!("{text}\n{feet}")).expect("right");
-            let walk = robot.gait("walk").expect("walk");
+        let slowest_forward = |feet: &str| {
+            let robot = Robot::parse(&format!("{text}\n{feet}")).expect("the robot file is valid");
+            let walk = robot.gait("walk").expect("paper.toml has the gait");
             let movements = (0..60).map(|seed| {
                 Variation::of(robot.ground(), seed).simulate_cycle(&robot, walk, ServoModel::SG90)
             });
             let [slowest] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
             slowest
         };
-        let level_forward = slow_forward("[feet]\nlevel = 0.0");
+        let level_forward = slowest_forward("[feet]\nlevel = 0.0");
         assert!(
-            slow_forward("") > 0.97 * level_forward
-                && slow_forward("[feet]\nstiffness = 3.3") < 0.65 * level_forward
+            slowest_forward("") > 0.97 * level_forward
+                && slowest_forward("[feet]\nstiffness = 3.3") < 0.65 * level_forward
         );
     }
 
     #[test]
-    fn added_play_changes_nothing_else_of_a_robot() {
-        let robot = Robot::parse(include_str!("../../../robots/paper.toml")).expect("right");
+    fn added_play_leaves_all_other_values_unchanged() {
+        let robot =
+            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         for seed in 0..50 {
-            let plain = Variation::of(robot.ground(), seed);
-            let with_play = plain.with_play(seed);
+            let variation = Variation::of(robot.ground(), seed);
+            let with_play = variation.with_play(seed);
             let play = with_play.ground.drive.play;
             assert!(
                 (0.0..=MAX_ADDED_PLAY_DEG).contains(&play) && play > 0.0,
@@ -230,7 +237,7 @@ mod tests {
             );
             let mut without_play = with_play;
             without_play.ground.drive.play = 0.0;
-            assert_eq!(without_play.ground, plain.ground);
+            assert_eq!(without_play.ground, variation.ground);
         }
     }
 
@@ -242,9 +249,9 @@ mod tests {
             "[leg]\ndrive = { kind = \"strut\", force = 0.5, rate = 0.4 }",
         );
         for text in [text, &text_with_springs] {
-            let robot = Robot::parse(text).expect("right");
+            let robot = Robot::parse(text).expect("the robot file is valid");
             for name in ["walk", "left"] {
-                let gait = robot.gait(name).expect(name);
+                let gait = robot.gait(name).expect("paper.toml has the gait");
                 for model in [ServoModel::Ideal, ServoModel::SG90] {
                     let movement =
                         Variation::none(robot.ground()).simulate_cycle(&robot, gait, model);

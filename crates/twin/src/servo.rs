@@ -5,7 +5,7 @@ use lizard_robot::{Motors, Robot};
 
 use crate::FRAME_S;
 
-/// A model of the servos.
+/// A model of the robot's servos.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
@@ -37,7 +37,7 @@ impl ServoModel {
         dead_band: 10.0,
     });
 
-    /// The servos of a robot.toml, on their own supply.
+    /// The servos of a robot.toml, at the voltage of their own supply.
     pub fn of(robot: &Robot) -> Self {
         Self::Motors(robot.motors())
     }

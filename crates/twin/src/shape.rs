@@ -57,11 +57,12 @@ mod tests {
     use super::*;
 
     fn paper_robot() -> Robot {
-        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
+        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
     }
 
     fn neutral_shape(robot: &Robot, leg_sweeps: [f64; 4]) -> Shape {
-        Shape::of(robot, robot.neutral_pose().into(), leg_sweeps).expect("neutral closes")
+        Shape::of(robot, robot.neutral_pose().into(), leg_sweeps)
+            .expect("every loop closes at neutral")
     }
 
     #[test]
@@ -104,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn at_neutral_each_foot_is_straight_beside_its_hip() {
+    fn at_neutral_each_foot_is_directly_beside_its_hip() {
         let robot = paper_robot();
         let feet = neutral_shape(&robot, [0.0; 4]).legs.map(|leg| leg.foot);
         for (foot, (x, y)) in
@@ -114,7 +115,10 @@ mod tests {
             assert!((foot - Vector::new(x, y)).length() < 1e-9, "{foot:?}");
         }
         for (foot, leg) in feet.into_iter().zip(neutral_shape(&robot, [10.0; 4]).legs) {
-            assert!(leg.foot.y > foot.y + 7.0, "forward");
+            assert!(
+                leg.foot.y > foot.y + 7.0,
+                "a positive sweep moves the foot forward"
+            );
         }
     }
 }

@@ -21,7 +21,7 @@ pub struct Tally {
     pub max_lag: f64,
     /// Name and value of the smallest margin; `None` before the first frame whose loops close.
     pub min_margin: Option<(Check, f64)>,
-    /// Smallest and greatest slider travel, mm; `None` before the first frame whose loops close.
+    /// Smallest and largest slider travel from nominal, mm; `None` before the first frame whose loops close.
     pub stroke_range: Option<[f64; 2]>,
     /// Highest speed of a servo, deg/s.
     pub max_rate: f64,
@@ -30,7 +30,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Returns a tally of no frames that starts at this place.
+    /// Creates an empty tally that starts at this place.
     pub fn new(start: Place) -> Self {
         Self {
             start,
@@ -67,17 +67,17 @@ impl Tally {
             self.min_margin = Some((check, value));
         }
         if let Some(strokes) = state.strokes {
-            let [smallest, greatest] = self
+            let [smallest, largest] = self
                 .stroke_range
                 .unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
             self.stroke_range = Some([
                 strokes.into_iter().fold(smallest, f64::min),
-                strokes.into_iter().fold(greatest, f64::max),
+                strokes.into_iter().fold(largest, f64::max),
             ]);
         }
     }
 
-    /// The movement of the body, seen from its start.
+    /// The movement of the body, in its frame at the start.
     pub fn travel(&self) -> Travel {
         self.end.travel_from(self.start)
     }

@@ -22,7 +22,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// Returns a robot that stands at neutral without pulses, with legs that do not lag.
+    /// Creates a twin that stands at neutral without pulses, with legs that do not lag.
     pub fn new(robot: &Robot, model: ServoModel) -> Self {
         Self {
             robot: robot.clone(),
@@ -48,10 +48,10 @@ impl Twin {
         self.simulate_frame(targets)
     }
 
-    /// Simulates a frame in which the servos turn towards these sweeps from neutral, deg, counter-clockwise
-    /// positive; `None` for a servo without a pulse.
+    /// Simulates a frame in which the servos turn towards these sweeps from neutral, deg, counter-clockwise positive;
+    /// `None` for a servo without a pulse.
     fn simulate_frame(&mut self, targets: [Option<f64>; 4]) -> State {
-        let sweeps_before = self.sweeps;
+        let previous_sweeps = self.sweeps;
         let servos = self.robot.servos();
         let targets: [Option<f64>; 4] = std::array::from_fn(|i| {
             let (min, max) = servos[i].travel();
@@ -71,7 +71,7 @@ impl Twin {
                     let Some(target) = targets[i] else { continue };
                     self.sweeps[i] = match self.servo_model {
                         ServoModel::Unloaded(model) => model.sweep_after_frame(
-                            sweeps_before[i],
+                            previous_sweeps[i],
                             target,
                             servos[i].us_per_degree,
                         ),
@@ -94,7 +94,7 @@ impl Twin {
             has_pulse: targets.map(|target| target.is_some()),
             place,
             angles,
-            rates: std::array::from_fn(|i| (self.sweeps[i] - sweeps_before[i]) / FRAME_S),
+            rates: std::array::from_fn(|i| (self.sweeps[i] - previous_sweeps[i]) / FRAME_S),
             errors,
             lags: self.walker.lags(),
             feet: ground
@@ -113,22 +113,22 @@ impl Twin {
         &self.robot
     }
 
-    /// The present positions of the joints, chassis frame; `None` if the loop of a five-bar or slider does not close.
+    /// The current positions of the joints, chassis frame; `None` if the loop of a five-bar or slider does not close.
     pub fn shape(&self) -> Option<Shape> {
         Shape::of(&self.robot, self.angles(), self.leg_sweeps())
     }
 
-    /// The present servo angles, deg, chassis frame.
+    /// The current servo angles, deg, chassis frame.
     pub fn angles(&self) -> [f64; 4] {
         std::array::from_fn(|i| self.robot.servos()[i].neutral + self.sweeps[i])
     }
 
-    /// The present sweeps of the legs, deg, foot forward positive. A leg may lag behind its servo.
+    /// The current sweeps of the legs, deg, foot forward positive. A leg may lag behind its servo.
     pub fn leg_sweeps(&self) -> [f64; 4] {
         self.walker.leg_sweeps()
     }
 
-    /// The present model of the floor, the pads and the drive of the legs.
+    /// The current model of the floor, the pads and the drive of the legs.
     pub fn ground(&self) -> &Ground {
         self.walker.ground()
     }
@@ -138,8 +138,8 @@ impl Twin {
         self.walker.set_ground(ground);
     }
 
-    /// Simulates two cycles of a gait at full speed from neutral, with the present ground and servos, and returns
-    /// the tally of the second cycle. This twin itself does not move.
+    /// Simulates two cycles of a gait at full speed from neutral, with the current ground and servos, and returns the
+    /// tally of the second cycle. This twin itself does not move.
     pub fn simulate_cycle(&self, gait: &CheckedGait) -> Tally {
         let mut twin = Self::new(&self.robot, self.servo_model);
         twin.set_ground(*self.ground());
@@ -168,7 +168,7 @@ impl Twin {
         self.walker.set_place(place);
     }
 
-    /// The sweeps of the legs if they did not lag, deg, foot forward positive.
+    /// The sweeps that the legs would have without lag, deg, foot forward positive.
     fn unlagged_leg_sweeps(&self) -> [f64; 4] {
         std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * self.sweeps[i])
     }

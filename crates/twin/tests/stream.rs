@@ -1,13 +1,13 @@
-//! Tests of the twin: the frames of a gait, simulated one by one, move the robot as predicted for the gait.
+//! Tests of the twin, such as: the frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
 use lizard_robot::{CheckedGait, Drive, DriveKind, Ground, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin, UnloadedServo};
 
 fn paper_robot() -> Robot {
-    Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is right")
+    Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
 }
 
-/// Returns the pulse widths of a gait at a phase, us, from the firmware's table.
+/// Computes the pulse widths of a gait at a phase, us, from the firmware's table.
 fn pulse_widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
@@ -20,7 +20,7 @@ fn simulate_last_of_four_cycles(
     model: ServoModel,
     ground: &Ground,
 ) -> Tally {
-    let gait = robot.gait(name).expect(name);
+    let gait = robot.gait(name).expect("paper.toml has the gait");
     let mut twin = Twin::new(robot, model);
     twin.set_ground(*ground);
     let mut tally = Tally::new(Place::START);
@@ -28,7 +28,7 @@ fn simulate_last_of_four_cycles(
         let start = twin.push(pulse_widths(
             robot,
             gait,
-            gait.frames().next().expect("a frame").1,
+            gait.frames().next().expect("a gait has a frame").1,
         ));
         tally = Tally::new(start.place);
         for (_, phase) in gait.frames().skip(1) {
@@ -104,14 +104,14 @@ fn servos_that_are_too_slow_for_a_gait_shorten_its_stride() {
 #[test]
 fn three_feet_do_not_slip_while_one_swings() {
     let robot = paper_robot();
-    let crawl = robot.gait("crawl").expect("crawl");
+    let crawl = robot.gait("crawl").expect("paper.toml has the gait");
     let mut twin = Twin::new(&robot, ServoModel::Ideal);
     for (seconds, phase) in crawl.frames() {
         let state = twin.push(pulse_widths(&robot, crawl, phase));
         // In the middle of the second fifth of the cycle, only the left hind leg swings.
         if (0.24..0.36).contains(&seconds) {
-            let are_still = state.slips.map(|mm| mm < 0.01);
-            assert_eq!(are_still, [true, true, true, false], "at {seconds}");
+            let is_still = state.slips.map(|distance| distance < 0.01);
+            assert_eq!(is_still, [true, true, true, false], "at {seconds}");
         }
     }
 }
@@ -119,7 +119,7 @@ fn three_feet_do_not_slip_while_one_swings() {
 #[test]
 fn a_robot_without_pulses_stays_where_it_is() {
     let robot = paper_robot();
-    let walk = robot.gait("walk").expect("walk");
+    let walk = robot.gait("walk").expect("the robot has the gait");
     let mut twin = Twin::new(&robot, ServoModel::SG90);
     for (_, phase) in walk.frames().take(20) {
         twin.push(pulse_widths(&robot, walk, phase));
@@ -135,8 +135,9 @@ fn a_robot_without_pulses_stays_where_it_is() {
 
 #[test]
 fn target_angles_move_the_robot_like_their_pulses() {
-    let robot = Robot::parse(include_str!("../../../robots/unequal.toml")).expect("right");
-    let walk = robot.gait("walk").expect("walk");
+    let robot =
+        Robot::parse(include_str!("../../../robots/unequal.toml")).expect("unequal.toml is valid");
+    let walk = robot.gait("walk").expect("the robot has the gait");
     let mut twins = [0, 1].map(|_| Twin::new(&robot, ServoModel::SG90));
     for (_, phase) in walk.frames() {
         let pulse_state = twins[0].push(pulse_widths(&robot, walk, phase));
@@ -153,10 +154,10 @@ fn target_angles_move_the_robot_like_their_pulses() {
 }
 
 #[test]
-fn simulate_cycle_equals_the_sum_of_its_frames() {
+fn a_simulated_cycle_matches_the_sum_of_its_frames() {
     let robot = paper_robot();
     for name in ["walk", "trot", "left"] {
-        let gait = robot.gait(name).expect(name);
+        let gait = robot.gait(name).expect("paper.toml has the gait");
         let framed_travel =
             simulate_last_of_four_cycles(&robot, name, ServoModel::SG90, robot.ground()).travel();
         let twin = Twin::new(&robot, ServoModel::SG90);

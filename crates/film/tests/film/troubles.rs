@@ -137,7 +137,8 @@ fn pictures_of_another_size_and_times_that_do_not_increase_are_refused() {
     );
 }
 
-/// Films a walk with a camera that is moved once, in the middle. In the second half, the tags `hidden_tags` are covered.
+/// Films a walk with a camera that is moved once, in the middle. In the second half, the tags `hidden_tags` are
+/// covered.
 fn film_with_moved_camera(hidden_tags: Vec<usize>) -> Film {
     let gait = paper_gait("walk");
     let walk = centred_walk(&gait, 5);
@@ -362,7 +363,8 @@ fn a_film_whose_rate_is_off_by_some_percent_shows_the_distance_per_cycle_and_its
     }
 }
 
-/// A picture of the sheet and the card, with a second copy of them to the right if `has_second_copy`, else an empty area.
+/// A picture of the sheet and the card, with a second copy of them to the right if `has_second_copy`, else an empty
+/// area.
 fn picture_with_copy(has_second_copy: bool) -> Picture {
     let mut rng = Rng::with_seed(2);
     let picture = studio()

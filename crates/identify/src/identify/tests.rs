@@ -14,18 +14,18 @@ const MEAN_ERROR: f64 = 0.05;
 /// A model whose movements are curved functions of the keys, with other coefficients for each gait.
 fn model_travels(values: &Values) -> Vec<Travel> {
     let mut rng = Rng::with_seed(5);
-    let mut next_part = || {
-        let mut part = 0.0;
+    let mut next_component = || {
+        let mut component = 0.0;
         for (value, key) in values.iter().zip(&KEYS) {
             let x = value / key.prior_error();
-            part += random_deviate(&mut rng) * (x + 0.1 * x * x);
+            component += random_deviate(&mut rng) * (x + 0.1 * x * x);
         }
-        part
+        component
     };
     let mut next_travel = |_| Travel {
-        forward: 30.0 + next_part(),
-        left: next_part(),
-        turn: 5.0 + next_part(),
+        forward: 30.0 + next_component(),
+        left: next_component(),
+        turn: 5.0 + next_component(),
     };
     (0..GAIT_COUNT).map(&mut next_travel).collect()
 }
@@ -35,20 +35,21 @@ fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
 
-/// The values of the imaginary robot.toml: zero, or the least possible value of the key.
+/// The values of a hypothetical robot.toml: zero, or the smallest possible value of the key if that is larger.
 fn file_values() -> Values {
     std::array::from_fn(|i| KEYS[i].min_value.max(0.0))
 }
 
-/// The movements of a robot as a camera measures them: by a card with this mounting error, and with random errors.
+/// The movements of a robot as a camera measures them: with this mounting error of the card, and with random errors.
 fn measure_robot(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let movement_of = |travel: Travel| {
         let card_travel = card.card_travel(travel);
-        let parts = [card_travel.forward, card_travel.left, card_travel.turn];
+        let components = [card_travel.forward, card_travel.left, card_travel.turn];
         MeasuredMovement {
             gait: "walk".to_owned(),
             pace: 1.0,
-            mean: parts.map(|part| part + MEAN_ERROR.hypot(MODEL_ERROR) * random_deviate(rng)),
+            mean: components
+                .map(|component| component + MEAN_ERROR.hypot(MODEL_ERROR) * random_deviate(rng)),
             error: [MEAN_ERROR; 3],
         }
     };
@@ -66,11 +67,11 @@ fn verdicts_of(result: &Identified) -> Vec<Verdict> {
 }
 
 #[test]
-fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
+fn changed_keys_are_within_two_standard_errors_in_95_percent_and_correct_keys_stay() {
     let (
-        mut near_count,
+        mut hit_count,
         mut changed_count,
-        mut moved_count,
+        mut false_change_count,
         mut unchanged_count,
         mut explained_count,
     ) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -89,34 +90,34 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
         }
         let card = random_card(&mut rng);
         let movements = measure_robot(&true_values, card, &mut rng);
-        let result = solve(&movements, file_values(), &model_travels).expect("a fit");
+        let result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
         explained_count += f64::from(u8::from(result.goodness.is_explained));
         for i in 0..KEY_COUNT {
             let key = &result.keys[i];
             assert!(key.verdict != Verdict::Undetermined, "{seed} {key:?}");
             if is_changed[i] {
                 changed_count += 1.0;
-                near_count += f64::from(u8::from(
+                hit_count += f64::from(u8::from(
                     (key.new_value - true_values[i]).abs() <= 2.0 * key.error,
                 ));
             } else {
                 unchanged_count += 1.0;
-                moved_count += f64::from(u8::from(key.verdict == Verdict::Moved));
+                false_change_count += f64::from(u8::from(key.verdict == Verdict::Moved));
             }
             let distance = (key.new_value - key.file_value).abs();
             assert_eq!(key.verdict == Verdict::Moved, distance > 0.0);
             assert!(distance == 0.0 || distance >= 2.0 * key.error);
         }
     }
-    let share = near_count / changed_count;
+    let share = hit_count / changed_count;
     assert!(
         (0.93..=0.985).contains(&share),
         "{share} of {changed_count}"
     );
     assert!(
-        moved_count / unchanged_count < 0.05,
+        false_change_count / unchanged_count < 0.05,
         "{} of {unchanged_count}",
-        moved_count / unchanged_count
+        false_change_count / unchanged_count
     );
     assert!(
         explained_count / ROBOT_COUNT as f64 > 0.97,
@@ -126,7 +127,7 @@ fn changed_keys_are_within_two_errors_in_95_of_100_and_correct_keys_stay() {
 
 #[test]
 fn at_a_fold_of_the_model_the_error_is_that_of_the_flatter_side() {
-    /// Twist below which the foot carries no load, mm; a shorter foot changes nothing more.
+    /// Twist below which the foot carries no load, mm, so that an even shorter foot has no further effect.
     const FOLD: f64 = -0.5;
     let folded_model = |values: &Values| {
         let mut values = *values;
@@ -140,7 +141,10 @@ fn at_a_fold_of_the_model_the_error_is_that_of_the_flatter_side() {
         movement.mean = [travel.forward, travel.left, travel.turn];
     }
     let twist_error_of = |model: &dyn Fn(&Values) -> Vec<Travel>| {
-        solve(&movements, file_values(), model).expect("a fit").keys[TWIST_INDEX].error
+        solve(&movements, file_values(), model)
+            .expect("the fit converges")
+            .keys[TWIST_INDEX]
+            .error
     };
     let [folded_error, smooth_error] = [
         twist_error_of(&folded_model),
@@ -168,7 +172,7 @@ fn a_key_without_influence_keeps_its_value_and_is_undetermined() {
         let card_travel = card.card_travel(travel);
         movement.mean = [card_travel.forward, card_travel.left, card_travel.turn];
     }
-    let result = solve(&movements, file_values(), &model_without_key_5).expect("a fit");
+    let result = solve(&movements, file_values(), &model_without_key_5).expect("the fit converges");
     let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
     (expected[0], expected[5]) = (Verdict::Moved, Verdict::Undetermined);
     assert_eq!(verdicts_of(&result), expected);
@@ -191,7 +195,7 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
     };
     let mut rng = Rng::with_seed(1);
     let movements = measure_robot(&file_values(), Card::default(), &mut rng);
-    let result = solve(&movements, file_values(), &equal_effect_model).expect("a fit");
+    let result = solve(&movements, file_values(), &equal_effect_model).expect("the fit converges");
     let [(a, b, correlation)] = result.correlated_pairs[..] else {
         panic!("{:?}", result.correlated_pairs);
     };
@@ -206,10 +210,10 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
 fn a_movement_that_no_key_explains_is_reported_and_widens_the_errors() {
     let mut rng = Rng::with_seed(2);
     let mut movements = measure_robot(&file_values(), Card::default(), &mut rng);
-    let good_result = solve(&movements, file_values(), &model_travels).expect("a fit");
+    let good_result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
     assert!(good_result.goodness.is_explained && good_result.goodness.error_factor == 1.0);
     movements[3].mean[0] += 4.0;
-    let bad_result = solve(&movements, file_values(), &model_travels).expect("a fit");
+    let bad_result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
     let Goodness {
         is_explained,
         error_factor,
@@ -249,7 +253,7 @@ fn a_play_below_zero_is_impossible_and_keeps_the_value_of_the_file() {
         movement.mean[1] -= play_travel.left - base_travel.left;
         movement.mean[2] -= play_travel.turn - base_travel.turn;
     }
-    let result = solve(&movements, file_values(), &model_travels).expect("a fit");
+    let result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
     let play_key = &result.keys[PLAY_INDEX];
     assert_eq!(play_key.new_value, 0.0);
     assert!(

@@ -25,7 +25,7 @@ pub struct Performance {
 pub struct Conditioning {
     /// Mean index over the circle's area (the global conditioning index).
     pub mean: f64,
-    /// Least index; it is on the rim, and is 0 if the circle touches the workspace's edge.
+    /// Smallest index; it is on the rim, and is 0 if the circle touches the workspace's edge.
     pub least: f64,
     /// Largest index in the circle.
     pub most: f64,
@@ -37,20 +37,20 @@ pub struct Conditioning {
 
 /// The local conditioning index with the end point at `point` and outward elbows; 0 on the rim of the workspace and
 /// outside it.
-pub fn lci(bars: &FiveBar, point: Vector) -> f64 {
-    bars.pose_at_point(point).map_or(0.0, |pose| pose.lci())
+pub fn lci(five_bar: &FiveBar, point: Vector) -> f64 {
+    five_bar.pose_at_point(point).map_or(0.0, |pose| pose.lci())
 }
 
 impl Performance {
     /// Computes the performance of a five-bar. The inscribed circle is sampled on `ring_count` rings.
-    pub fn of(bars: &FiveBar, ring_count: usize) -> Self {
-        let workspace = Workspace::of(bars);
+    pub fn of(five_bar: &FiveBar, ring_count: usize) -> Self {
+        let workspace = Workspace::of(five_bar);
         let circle = workspace.inscribed_circle();
         Self {
             area: workspace.area(),
             r_mic: circle.map_or(0.0, |circle| circle.radius),
             y_mic: circle.map_or(0.0, |circle| circle.centre.y),
-            lci: circle.map(|circle| Conditioning::sample(bars, circle, ring_count)),
+            lci: circle.map(|circle| Conditioning::sample(five_bar, circle, ring_count)),
         }
     }
 }
@@ -58,7 +58,7 @@ impl Performance {
 impl Conditioning {
     /// Samples the circle on rings of equal area, and on its rim. Then refines the largest index, and searches outward
     /// for the radius at which the index first falls below the claimed bound.
-    fn sample(bars: &FiveBar, circle: Circle, ring_count: usize) -> Self {
+    fn sample(five_bar: &FiveBar, circle: Circle, ring_count: usize) -> Self {
         let spoke_count = 4 * ring_count;
         let mut sum = 0.0;
         let mut count_above = 0;
@@ -68,7 +68,7 @@ impl Conditioning {
             for ring in 0..ring_count {
                 let radius = circle.radius * ((ring as f64 + 0.5) / ring_count as f64).sqrt();
                 let point = circle.centre + direction * radius;
-                let index = lci(bars, point);
+                let index = lci(five_bar, point);
                 sum += index;
                 count_above += usize::from(index > CLAIMED_LCI);
                 min_index = min_index.min(index);
@@ -80,43 +80,46 @@ impl Conditioning {
         // The samples on the rim include the four points at which the circle may touch the workspace's edge.
         for spoke in 0..spoke_count {
             let direction = Vector::direction(spoke as f64 * 360.0 / spoke_count as f64);
-            min_index = min_index.min(lci(bars, circle.centre + direction * circle.radius));
+            min_index = min_index.min(lci(five_bar, circle.centre + direction * circle.radius));
         }
-        for shaft in [bars.left_shaft(), bars.right_shaft()] {
+        for shaft in [five_bar.left_shaft(), five_bar.right_shaft()] {
             let from_shaft = circle.centre - shaft;
             for distance in [circle.radius, -circle.radius] {
                 let touch_point = circle.centre + from_shaft * (distance / from_shaft.length());
-                min_index = min_index.min(lci(bars, touch_point));
+                min_index = min_index.min(lci(five_bar, touch_point));
             }
         }
         let sample_count = (ring_count * spoke_count) as f64;
         Self {
             mean: sum / sample_count,
             least: min_index,
-            most: largest_index_near(bars, circle, best_sample, circle.radius / ring_count as f64),
+            most: largest_index_near(
+                five_bar,
+                circle,
+                best_sample,
+                circle.radius / ring_count as f64,
+            ),
             share_above: count_above as f64 / sample_count,
-            radius_above: Self::radius_above(bars, circle, ring_count),
+            radius_above: Self::radius_above(five_bar, circle, ring_count),
         }
     }
 
     /// Radius of the concentric circle within which the index is at least the claimed bound.
-    fn radius_above(bars: &FiveBar, circle: Circle, ring_count: usize) -> f64 {
+    fn radius_above(five_bar: &FiveBar, circle: Circle, ring_count: usize) -> f64 {
         let step = circle.radius / (2 * ring_count) as f64;
         (0..4 * ring_count)
             .map(|spoke| {
                 let direction = Vector::direction(spoke as f64 * 90.0 / ring_count as f64);
                 let is_above_claim =
-                    |radius: f64| lci(bars, circle.centre + direction * radius) >= CLAIMED_LCI;
-                let Some(first_outside) =
+                    |radius: f64| lci(five_bar, circle.centre + direction * radius) >= CLAIMED_LCI;
+                let Some(first_below) =
                     (0..=2 * ring_count).find(|&i| !is_above_claim(i as f64 * step))
                 else {
                     return circle.radius;
                 };
-                let (mut inner_radius, mut outer_radius) = (
-                    (first_outside as f64 - 1.0) * step,
-                    first_outside as f64 * step,
-                );
-                if first_outside == 0 {
+                let (mut inner_radius, mut outer_radius) =
+                    ((first_below as f64 - 1.0) * step, first_below as f64 * step);
+                if first_below == 0 {
                     return 0.0;
                 }
                 for _ in 0..30 {
@@ -136,7 +139,7 @@ impl Conditioning {
 /// Searches for the largest index in the circle near a sample, by hill climbing. The step is halved if no neighbour is
 /// better.
 fn largest_index_near(
-    bars: &FiveBar,
+    five_bar: &FiveBar,
     circle: Circle,
     start_sample: (f64, Vector),
     first_step: f64,
@@ -148,8 +151,8 @@ fn largest_index_near(
         let best_neighbour = directions
             .map(|(x, y)| point + Vector::new(x, y) * step)
             .into_iter()
-            .filter(|p| (*p - circle.centre).length() <= circle.radius)
-            .map(|p| (lci(bars, p), p))
+            .filter(|point| (*point - circle.centre).length() <= circle.radius)
+            .map(|point| (lci(five_bar, point), point))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         match best_neighbour {
             Some(best_neighbour) if best_neighbour.0 > value => (value, point) = best_neighbour,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::proportions::{Proportions, triangle_points};
 
-/// The demands on every design.
+/// The requirements for every design.
 #[derive(Clone, Copy)]
 pub struct Demands {
     /// Base l0, mm.
@@ -20,9 +20,9 @@ pub struct Demands {
     pub chassis_length_mm: f64,
     /// Length of a leg's crank, mm, which determines the stride.
     pub leg_crank_mm: f64,
-    /// Least margins, and range of the slider travel.
+    /// Smallest allowed margins, and range of the slider travel.
     pub limits: Limits,
-    /// Servo travel to either side of neutral, degrees.
+    /// Largest servo travel to either side of neutral, degrees.
     pub travel_deg: f64,
     /// Shortest link that can be made, mm.
     pub min_link_mm: f64,
@@ -44,7 +44,7 @@ pub struct Design {
     pub sweep: f64,
     /// Stride of a foot with the largest safe sweep, mm.
     pub stride: f64,
-    /// Least margin within the demanded sweep.
+    /// Smallest margin within the demanded sweep, a sine.
     pub margin: f64,
     /// Mean conditioning index within the demanded sweep.
     pub lci: f64,
@@ -109,20 +109,20 @@ pub fn merge_and_rank(pieces: Vec<Vec<Design>>) -> Vec<Design> {
 /// demanded, or if a link is too short.
 pub fn find_design(proportions: Proportions, demands: &Demands) -> Option<Design> {
     let d = proportions.scale_for_base(demands.base_mm);
-    let bars = proportions.at_scale(d);
-    if bars.left_crank_length.min(bars.left_coupler_length) < demands.min_link_mm {
+    let five_bar = proportions.at_scale(d);
+    if five_bar.left_crank_length.min(five_bar.left_coupler_length) < demands.min_link_mm {
         return None;
     }
     let (neutral, sweep) = (90..=170)
         .map(|neutral| {
             let neutral = f64::from(neutral);
-            (neutral, largest_sweep(&bars, neutral, demands))
+            (neutral, largest_sweep(&five_bar, neutral, demands))
         })
         .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
     if sweep < demands.sweep_deg {
         return None;
     }
-    let (margin, lci) = margin_and_lci(&bars, neutral, demands.sweep_deg);
+    let (margin, lci) = margin_and_lci(&five_bar, neutral, demands.sweep_deg);
     Some(Design {
         proportions,
         d,
@@ -137,14 +137,14 @@ pub fn find_design(proportions: Proportions, demands: &Demands) -> Option<Design
 }
 
 /// The largest sweep about a neutral angle within all limits, degrees.
-fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
+fn largest_sweep(five_bar: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
     let (mut safe_deg, mut unsafe_deg) = (0.0, demands.travel_deg.min(89.9));
-    if !keeps_limits(bars, neutral, safe_deg, demands) {
+    if !keeps_limits(five_bar, neutral, safe_deg, demands) {
         return 0.0;
     }
     for _ in 0..9 {
         let middle_deg = (safe_deg + unsafe_deg) / 2.0;
-        if keeps_limits(bars, neutral, middle_deg, demands) {
+        if keeps_limits(five_bar, neutral, middle_deg, demands) {
             safe_deg = middle_deg;
         } else {
             unsafe_deg = middle_deg;
@@ -157,9 +157,9 @@ fn largest_sweep(bars: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
 const SWEEP_SAMPLES: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// True if the five-bar and the sliders keep the limits at all sampled angles of the sweep.
-fn keeps_limits(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
+fn keeps_limits(five_bar: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
     let limits = &demands.limits;
-    let slider = slider_of_side(bars, demands);
+    let slider = slider_of_side(five_bar, demands);
     // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
     let span_of = |front: f64, rear: f64| {
         slider
@@ -173,7 +173,7 @@ fn keeps_limits(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> 
             let right_angle = 180.0 - neutral + right_fraction * sweep;
             let travel = span_of(left_angle, neutral + right_fraction * sweep) - nominal_span;
             limits.violation_of(Check::StrokeLeft, travel).is_none()
-                && bars
+                && five_bar
                     .forward(left_angle, right_angle)
                     .is_ok_and(|pose| limits.end_violations(End::Head, &pose).next().is_none())
         })
@@ -181,33 +181,34 @@ fn keeps_limits(bars: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> 
 }
 
 /// The slider of a side, with arms as long as the cranks, as in the paper.
-fn slider_of_side(bars: &FiveBar, demands: &Demands) -> Slider {
+fn slider_of_side(five_bar: &FiveBar, demands: &Demands) -> Slider {
     Slider {
         front_offset: 0.0,
         base: demands.chassis_length_mm,
-        front_arm: bars.left_crank_length,
-        rear_arm: bars.left_crank_length,
+        front_arm: five_bar.left_crank_length,
+        rear_arm: five_bar.left_crank_length,
         nominal_length: 0.0,
     }
 }
 
-/// Least margin and mean conditioning index within a sweep.
-fn margin_and_lci(bars: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
-    let mut least_margin = f64::INFINITY;
+/// Smallest margin and mean conditioning index within a sweep.
+fn margin_and_lci(five_bar: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
+    let mut min_margin = f64::INFINITY;
     let mut lci_sum = 0.0;
     for left_fraction in SWEEP_SAMPLES {
         let left_angle = neutral + left_fraction * sweep;
         // The margin of the leg on this crank.
-        least_margin = least_margin.min(left_angle.to_radians().sin());
+        min_margin = min_margin.min(left_angle.to_radians().sin());
         for right_fraction in SWEEP_SAMPLES {
-            if let Ok(pose) = bars.forward(left_angle, 180.0 - neutral + right_fraction * sweep) {
-                least_margin = least_margin.min(pose.margin());
+            if let Ok(pose) = five_bar.forward(left_angle, 180.0 - neutral + right_fraction * sweep)
+            {
+                min_margin = min_margin.min(pose.margin());
                 lci_sum += pose.lci();
             }
         }
     }
     (
-        least_margin,
+        min_margin,
         lci_sum / (SWEEP_SAMPLES.len() * SWEEP_SAMPLES.len()) as f64,
     )
 }

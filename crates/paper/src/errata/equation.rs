@@ -80,7 +80,7 @@ impl FormErrors {
     const ROUNDING: f64 = 1e-6;
 
     /// Evaluates a form at all samples.
-    pub fn of(error_fn: ErrorFn, samples: &[Sample]) -> Self {
+    pub fn evaluate(error_fn: ErrorFn, samples: &[Sample]) -> Self {
         let mut largest = 0.0_f64;
         let mut unreal_count = 0usize;
         for sample in samples {

@@ -45,11 +45,11 @@ pub fn equation_count() -> usize {
 /// Calls `report_progress` after each equation.
 pub fn measure(sample_count: u32, report_progress: &(dyn Fn() + Sync)) -> Vec<Entry> {
     let samples: Vec<Sample> = Sample::generate(sample_count as usize).collect();
-    let measure_one = |equation: &Equation| {
-        let printed = FormErrors::of(equation.printed_error, &samples);
+    let measure_equation = |equation: &Equation| {
+        let printed = FormErrors::evaluate(equation.printed_error, &samples);
         let corrected = equation
             .correction
-            .map(|(_, error_fn)| FormErrors::of(error_fn, &samples));
+            .map(|(_, error_fn)| FormErrors::evaluate(error_fn, &samples));
         report_progress();
         Entry {
             place: equation.place,
@@ -60,14 +60,14 @@ pub fn measure(sample_count: u32, report_progress: &(dyn Fn() + Sync)) -> Vec<En
             unit: equation.unit,
             aside: equation
                 .special_case
-                .map(|(name, error_fn)| (FormErrors::of(error_fn, &samples).largest, name)),
+                .map(|(name, error_fn)| (FormErrors::evaluate(error_fn, &samples).largest, name)),
             holds_clockwise: equation
                 .clockwise_error
-                .map(|error_fn| FormErrors::of(error_fn, &samples).holds()),
+                .map(|error_fn| FormErrors::evaluate(error_fn, &samples).holds()),
             corrected: equation.correction.map(|(form, _)| form),
             corrected_worst: corrected.map(|errors| errors.largest),
             corrected_holds: corrected.map(|errors| errors.holds()),
         }
     };
-    equations().into_par_iter().map(measure_one).collect()
+    equations().into_par_iter().map(measure_equation).collect()
 }

@@ -33,12 +33,13 @@ pub const EQUATIONS: &[Equation] = &[
         "mm",
         |sample| {
             let (d, proportions) = (10.0 + 100.0 * sample.random[0], Proportions::PAPER);
-            let bars = proportions.at_scale(d);
-            let sum = bars.left_crank_length + bars.left_coupler_length + bars.base / 2.0;
+            let five_bar = proportions.at_scale(d);
+            let sum =
+                five_bar.left_crank_length + five_bar.left_coupler_length + five_bar.base / 2.0;
             Some(
                 (sum / PROPORTION_SUM - d)
                     .abs()
-                    .max((proportions.scale_for_base(bars.base) - d).abs()),
+                    .max((proportions.scale_for_base(five_bar.base) - d).abs()),
             )
         },
     ),
@@ -65,16 +66,16 @@ pub const EQUATIONS: &[Equation] = &[
         "r = (l1 + l2 - |l1 - l2|)/2, y = sqrt((l1 + l2 + |l1 - l2|)²/4 - (l0/2)²)",
         "mm",
         |sample| {
-            let bars = sample.lizard.end(End::Head);
+            let five_bar = sample.lizard.end(End::Head);
             let (sum, difference) = (
-                bars.left_crank_length + bars.left_coupler_length,
-                (bars.left_crank_length - bars.left_coupler_length).abs(),
+                five_bar.left_crank_length + five_bar.left_coupler_length,
+                (five_bar.left_crank_length - five_bar.left_coupler_length).abs(),
             );
             let r = (sum - difference) / 2.0;
-            let y = ((sum + difference).powi(2) / 4.0 - (bars.base / 2.0).powi(2)).sqrt();
+            let y = ((sum + difference).powi(2) / 4.0 - (five_bar.base / 2.0).powi(2)).sqrt();
             let clearance_at = |x: f64, y: f64| {
-                let left_distance = (x + bars.base / 2.0).hypot(y);
-                let right_distance = (x - bars.base / 2.0).hypot(y);
+                let left_distance = (x + five_bar.base / 2.0).hypot(y);
+                let right_distance = (x - five_bar.base / 2.0).hypot(y);
                 [left_distance, right_distance]
                     .iter()
                     .map(|distance| (distance - difference).min(sum - distance))
@@ -130,12 +131,12 @@ pub const EQUATIONS: &[Equation] = &[
 /// The largest error, in radius, of the circle equation at random points on the limits of the arms' reach. `y_term`
 /// returns the equation's term in y.
 fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
-    let bars = sample.lizard.end(End::Head);
+    let five_bar = sample.lizard.end(End::Head);
     let mut largest_error = 0.0_f64;
-    for shaft_x in [-bars.base / 2.0, bars.base / 2.0] {
+    for shaft_x in [-five_bar.base / 2.0, five_bar.base / 2.0] {
         for radius in [
-            bars.left_crank_length + bars.left_coupler_length,
-            (bars.left_crank_length - bars.left_coupler_length).abs(),
+            five_bar.left_crank_length + five_bar.left_coupler_length,
+            (five_bar.left_crank_length - five_bar.left_coupler_length).abs(),
         ] {
             let rim_point = polar(radius, PI * sample.random[0]);
             // x11 is measured from the middle of the base. The rim point is measured from the shaft.
@@ -149,13 +150,13 @@ fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
 
 /// The LCI at a random point within the concentric circle of `radius_factor` times the inscribed circle's radius.
 fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
-    let bars = sample.lizard.end(End::Head);
-    Workspace::of(&bars)
+    let five_bar = sample.lizard.end(End::Head);
+    Workspace::of(&five_bar)
         .inscribed_circle()
         .map_or(0.0, |circle| {
             let radius = circle.radius * radius_factor * sample.random[0].sqrt();
             lci(
-                &bars,
+                &five_bar,
                 circle.centre + Vector::direction(360.0 * sample.random[1]) * radius,
             )
         })
