@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RobotIdentity {
-    /// The name in its robot.toml.
+    /// The robot's name in robot.toml.
     pub name: String,
     /// The hash of the robot's numbers, eight hexadecimal digits.
     pub hash: String,
@@ -26,13 +26,13 @@ impl RobotIdentity {
 pub struct Banner {
     /// The firmware's version.
     pub version: String,
-    /// The robot in the flash; `None` if there is none or it is damaged.
+    /// The robot in the flash; `None` if there is no robot or it is damaged.
     pub robot: Option<RobotIdentity>,
 }
 
 impl Banner {
-    /// Reads a banner; `None` for any other line, also for one that was cut off or that an old firmware, which had its
-    /// robot compiled in, has sent.
+    /// Parses a banner; `None` for any other line, including a banner that was cut off and one of old firmware, which
+    /// had its robot compiled in.
     #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
         let (line, _) = line.strip_prefix("# lizard ")?.split_once(',')?;
@@ -72,13 +72,13 @@ mod tests {
                 None,
             ),
         ] {
-            let banner = Banner::parse(line).expect("it is a banner");
+            let banner = Banner::parse(line).expect("the line is a banner");
             assert_eq!((banner.version.as_str(), banner.robot), ("0.2.0", robot));
         }
     }
 
     #[test]
-    fn other_lines_and_banners_that_were_cut_off_are_no_banners() {
+    fn other_lines_and_banners_that_were_cut_off_are_rejected() {
         for line in [
             "hello",
             "# lizard ",

@@ -1,24 +1,25 @@
 //! The calibration of one robot, which the console command `save` stores, as console lines and as a file.
 //!
 //! Two robots built from one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The
-//! host program and the page measure these differences and store them; the rules for both are here.
+//! host program and the page measure these differences and store them, both by the rules of this module.
 
 use std::collections::VecDeque;
 
 use lizard_core::console::command::MAX_DEADMAN_MS;
 use toml::de::DeTable;
 
-use crate::file::{Checked, Error, Fault, Section, parse};
+use crate::file::{Checked, Error, Section, UnlocatedError, parse};
 use crate::measures::servo::SERVO_NAMES;
 
 /// The value of the key `format`. Its number increases when a key changes its meaning.
 const FORMAT: &str = "lizard calibration 1";
+/// The comment at the start of a calibration file.
 const FILE_HEADER: &str = "\
 # A lizard's calibration. `lizard calibrate restore` gives it back to the robot.
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 
 ";
-/// Largest difference of equal settings: slightly less than half of 0.01, the last digit that the console prints.
+/// Largest difference between settings that count as equal: slightly less than half of 0.01, the last digit that the console prints.
 const TOLERANCE: f64 = 0.0049;
 
 /// The settings of a robot that `save` stores.
@@ -48,8 +49,8 @@ pub struct ServoSettings {
 }
 
 impl ServoSettings {
-    /// Returns the settings of a servo that turns in the opposite direction. The neutral pulse stays the same, so
-    /// the trim changes its sign.
+    /// Returns the settings of a servo that turns in the opposite direction. The neutral pulse width stays the same,
+    /// so the trim changes its sign.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {
@@ -59,8 +60,8 @@ impl ServoSettings {
         }
     }
 
-    /// Returns the settings with another scale, us/deg. The neutral pulse stays the same: the trim is converted to
-    /// the new scale.
+    /// Returns the settings with another scale, us/deg. The neutral pulse width stays the same: the trim is
+    /// converted to the new scale.
     #[must_use]
     pub fn with_scale(self, scale: f64) -> Self {
         let scale = round_to_hundredths(scale);
@@ -71,7 +72,7 @@ impl ServoSettings {
         }
     }
 
-    /// Reads a servo's line in the answer to `cal`, such as `# A1 trim 0 limit 48.59 228.59 dir + scale 10`, given
+    /// Parses a servo's line in the answer to `cal`, such as `# A1 trim 0 limit 48.59 228.59 dir + scale 10`, given
     /// without `# A1 `. `None` if a setting is missing or cannot be read.
     fn parse(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split(' ').collect();
@@ -98,6 +99,7 @@ impl ServoSettings {
         })
     }
 
+    /// Reads the table of a servo in a calibration file.
     fn from_section(section: &Section) -> Checked<Self> {
         let read_number = |key| {
             let value = section.number(key, -360.0, 360.0, "deg")?;
@@ -112,7 +114,7 @@ impl ServoSettings {
             "-" => '-',
             direction => {
                 let problem = format!("is \"{direction}\"; it must be \"+\" or \"-\"");
-                return Err(section.fault("dir", problem));
+                return Err(section.error("dir", problem));
             }
         };
         Ok(Self {
@@ -125,7 +127,7 @@ impl ServoSettings {
 }
 
 impl Calibration {
-    /// Reads the answer to `cal`; skips other lines. `None` if a setting is missing or cannot be read.
+    /// Parses the answer to `cal`; skips other lines. `None` if a setting is missing or cannot be read.
     #[must_use]
     pub fn from_cal_answer(lines: &[String]) -> Option<Self> {
         let text_after = |keyword: &str| {
@@ -207,7 +209,7 @@ impl Calibration {
         text
     }
 
-    /// Reads the text of a calibration file; errors give the file's `name`.
+    /// Parses the text of a calibration file; errors give the file's `name`.
     ///
     /// # Errors
     /// Returns the first mistake, with its line and key.
@@ -218,21 +220,22 @@ impl Calibration {
         })
     }
 
+    /// Reads the tables of a calibration file.
     fn from_table(table: &DeTable) -> Checked<Self> {
         let format = table.get("format").map(|value| value.get_ref().as_str());
         if format != Some(Some(FORMAT)) {
             let problem =
                 format!("must be \"{FORMAT}\": this is not a calibration that can be read");
-            return Err(Fault::new("format", problem));
+            return Err(UnlocatedError::new("format", problem));
         }
         let root = Section::root(table, &["format", "boot", "deadman", "servo"])?;
         let boot = root.text("boot")?;
         if !is_gait_name(boot) {
-            return Err(root.fault("boot", "is not the name of a gait"));
+            return Err(root.error("boot", "is not the name of a gait"));
         }
         let deadman = root.number("deadman", 0.0, f64::from(MAX_DEADMAN_MS), "ms")?;
         if deadman.fract() != 0.0 {
-            return Err(root.fault("deadman", "must be a whole number of ms"));
+            return Err(root.error("deadman", "must be a whole number of ms"));
         }
         let servos = root.section("servo", &SERVO_NAMES)?;
         let read_servo = |name| {
@@ -253,7 +256,8 @@ impl Calibration {
     }
 }
 
-/// A transfer of a calibration to a robot, line by line, in an order that the robot accepts. It does not save it.
+/// A transfer of a calibration to a robot, line by line, in an order that the robot accepts. The transfer does not save the
+/// calibration.
 ///
 /// The robot refuses a line after which a gait would leave the servos' travel. This may happen while the settings
 /// change one by one, even if the old and the new calibration are both valid. So refused lines are sent again after
@@ -269,14 +273,14 @@ pub struct Transfer {
     last_line: String,
     /// The refused lines of the current round.
     refused_lines: Vec<String>,
-    /// Number of lines of the current round.
+    /// Number of lines in the current round.
     round_line_count: usize,
-    /// True once a round has begun with `factory`.
+    /// True once the round that starts with `factory` has begun.
     has_sent_factory: bool,
 }
 
 impl Transfer {
-    /// Makes a transfer that has sent no line yet.
+    /// Creates a transfer that has not sent a line yet.
     #[must_use]
     pub fn new(calibration: &Calibration) -> Self {
         let lines = calibration.console_lines();
@@ -330,7 +334,7 @@ fn is_gait_name(text: &str) -> bool {
 fn require_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
     match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
         true => Ok(value),
-        false => Err(section.fault(
+        false => Err(section.error(
             key,
             format!("is {value}; it must have at most two decimals"),
         )),

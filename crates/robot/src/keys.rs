@@ -11,7 +11,9 @@ use crate::gaits::{define, routine};
 use crate::measures::Measures;
 use crate::robot::TOP_LEVEL_KEYS;
 
+/// The page of the book with the reference.
 const PAGE_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robot-toml.md");
+/// The line of the page after which the reference starts.
 const KEYS_MARK: &str = "<!-- keys of robot.toml -->\n";
 
 /// The text of a robot with every table, and with each key whose default the reader does not record.
@@ -43,8 +45,8 @@ fn robot_text_with_every_table() -> String {
         .collect::<String>()
 }
 
-/// The name of a key in keys.txt, where all names chosen by the author, all four servos or legs, and both ends
-/// share one entry.
+/// The name of a key in keys.txt. There, the names that an author chooses, the four servos, the four legs, and both
+/// ends share one entry each.
 fn generic_name(key: &str) -> String {
     let names: Vec<&str> = key.split('.').collect();
     let parts = names.iter().enumerate().map(|(index, name)| {
@@ -61,7 +63,7 @@ fn generic_name(key: &str) -> String {
     parts.collect::<Vec<_>>().join(".")
 }
 
-/// A key's cells for values and default in the reference, as far as the reader records them.
+/// The cells of a key in the reference that the reader records: its values and its default.
 #[derive(Default)]
 struct RecordedCells {
     values: Option<String>,
@@ -104,7 +106,7 @@ struct KeyLine {
     cells: [&'static str; 4],
 }
 
-/// The tables of keys.txt: name, meaning, keys.
+/// The tables of keys.txt, each with its name, its meaning and its keys.
 fn reference_tables() -> Vec<(&'static str, &'static str, Vec<KeyLine>)> {
     let mut tables: Vec<(_, _, Vec<KeyLine>)> = Vec::new();
     let lines = include_str!("keys.txt").lines();
@@ -156,8 +158,8 @@ fn the_page_of_keys_agrees_with_the_reader() {
         for KeyLine { key, cells } in lines {
             let recorded_cells = &keys[&key];
             let [name, values, default, meaning] = cells;
-            let cell_text = |cell: &str, words: &Option<String>| match (cell, words) {
-                (".", Some(words)) => words.clone(),
+            let cell_text = |cell: &str, recorded: &Option<String>| match (cell, recorded) {
+                (".", Some(recorded)) => recorded.clone(),
                 (".", None) => panic!("the reader does not record this cell: {key}"),
                 (cell, _) => cell.to_owned(),
             };
@@ -184,10 +186,10 @@ fn the_page_of_keys_agrees_with_the_reader() {
 fn read_definitions(text: &str) -> Result<(), Error> {
     file::parse(text, |table| {
         let root = Section::root(table, &TOP_LEVEL_KEYS)?;
-        let body = Measures::read(&root)?;
-        let gaits = define::read_gaits(&root, &body)?;
+        let measures = Measures::read(&root)?;
+        let gaits = define::read_gaits(&root, &measures)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
-        routine::read_routines(&root, &names, &body.inputs).map(|_| ())
+        routine::read_routines(&root, &names, &measures.inputs).map(|_| ())
     })
 }
 

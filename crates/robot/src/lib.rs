@@ -2,7 +2,7 @@
 //! the page, the firmware's build script and the tests.
 //!
 //! [`Robot::load`] reads the file and checks everything in it, including every sample of
-//! every gait, so every `Robot` can walk. It gives the gaits in floating point together
+//! every gait, so every `Robot` can walk. It provides the gaits in floating point together
 //! with the tables that the firmware reads ([`CheckedGait`]), the robot in the integers
 //! of the core ([`CoreRobot`]) and the section of flash that carries these to the board
 //! ([`Robot::section`]).

@@ -11,7 +11,7 @@ use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
 use toml::de::DeTable;
 
 use crate::checks::{CheckedGait, Effort, HIGH_LINE_SHARE};
-use crate::file::{self, Checked, Error, Fault, Section};
+use crate::file::{self, Checked, Error, Section, UnlocatedError};
 use crate::gaits::{Routine, define, routine};
 use crate::measures::servo::FORWARD_TURN_SIGN;
 use crate::measures::{
@@ -19,16 +19,16 @@ use crate::measures::{
 };
 use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
 
-/// A robot whose every value and gait has been checked.
+/// A robot of which every value and every gait has been checked.
 #[derive(Debug, Clone)]
 pub struct Robot {
     measures: Measures,
     gaits: Vec<CheckedGait>,
     routines: Vec<Routine>,
     content: Content,
-    /// The section of flash without the maps of certified cells, as the core on a host reads it.
+    /// The section of flash, without the maps of certified cells, that the core reads on a host.
     section: Arc<[u8]>,
-    /// The core's view of the robot, whose section is never freed; made at its first use.
+    /// The core's view of the robot, whose section is never freed; created at its first use.
     firmware: OnceLock<CoreRobot>,
 }
 
@@ -52,7 +52,7 @@ impl Robot {
         let file = path.display().to_string();
         match file::read_text(path) {
             Ok(text) => Self::parse(&text).map_err(|error| Error { file, ..error }),
-            Err(problem) => Err(Fault::new("", problem).in_file(file, None)),
+            Err(problem) => Err(UnlocatedError::new("", problem).in_file(file, None)),
         }
     }
 
@@ -68,7 +68,7 @@ impl Robot {
     /// Checks that gait.
     ///
     /// # Errors
-    /// Fails if the table contains a mistake, if the gait breaks a limit, or if the robot's section gets too large.
+    /// Fails if the table contains a mistake, if the gait violates a limit, or if the robot's section gets too large.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
         const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
         // Parsed alone first, because the message of a syntax error may cite a second line number.
@@ -122,22 +122,22 @@ impl Robot {
         let tables = Arc::new(tables);
         let length = content.section_length();
         if length > usize::from(SPACE_BYTES) {
-            return Err(size_fault(&content, length));
+            return Err(size_error(&content, length));
         }
         let section: Arc<[u8]> = content.section_bytes().into();
         let flash = Region::new(&section);
-        let core_fault = || {
+        let core_error = || {
             let message =
                 "the firmware would not take this robot: its numbers cannot be worked with";
-            Fault::new("", message)
+            UnlocatedError::new("", message)
         };
         let core_robot =
-            lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(core_fault)?;
+            lizard_core::numbers::robot::Robot::unchecked(flash).ok_or_else(core_error)?;
         let check_gait =
             |(index, gait)| CheckedGait::new(gait, index, &tables, &measures, &core_robot);
         let gaits = gaits.into_iter().enumerate().map(check_gait);
         let gaits = gaits.collect::<Checked<_>>()?;
-        lizard_core::numbers::robot::Robot::open(flash).map_err(|_| core_fault())?;
+        lizard_core::numbers::robot::Robot::open(flash).map_err(|_| core_error())?;
         Ok(Self {
             gaits,
             routines,
@@ -165,7 +165,7 @@ impl Robot {
         self.section_with_maps().is_some()
     }
 
-    /// An upper bound, in CPU cycles, of the console's search for the name of the last gait or routine. A test
+    /// An upper bound for the CPU cycles of the console's search for the name of the last gait or routine. A test
     /// compares the bound with the simulated UNO.
     #[must_use]
     pub fn max_search_cycles(&self) -> usize {
@@ -209,7 +209,7 @@ impl Robot {
         &self.measures.servo_type
     }
 
-    /// The supply voltages for which the reports give figures, V: the servos' own, the one at which the robot slows down,
+    /// The supply voltages of the reports, V: the servos' own, the one at which the robot slows down,
     /// and the one at which it stops.
     pub fn reported_volts(&self) -> [f64; 3] {
         let supplies = self.supplies();
@@ -315,19 +315,19 @@ impl Robot {
         &self.routines
     }
 
-    /// Finds a routine by its name, with dashes or blanks between the words.
+    /// Finds a routine by its name, with hyphens or spaces between the words.
     pub fn routine(&self, name: &str) -> Option<&Routine> {
         let name = name.replace(' ', "-");
         self.routines.iter().find(|routine| routine.name() == name)
     }
 
-    /// Finds a gait by its name, with dashes or blanks between the words.
+    /// Finds a gait by its name, with hyphens or spaces between the words.
     pub fn gait(&self, name: &str) -> Option<&CheckedGait> {
         let name = name.replace(' ', "-");
         self.gaits.iter().find(|gait| gait.name() == name)
     }
 
-    /// Finds the gait that a console line names. A blank and a number of cycles may follow the name.
+    /// Finds the gait that a console line names. A space and a number of cycles may follow the name.
     pub fn gait_of_line(&self, line: &str) -> Option<&CheckedGait> {
         let name = line.trim_end_matches(|c: char| c.is_ascii_digit());
         let counted_gait = || name.ends_with(' ').then(|| self.gait(name.trim_end()))?;
@@ -380,7 +380,7 @@ impl Robot {
     }
 
     /// Solves the robot at servo angles (deg, chassis frame, servo order). Returns `None` if a servo does not reach
-    /// its angle or the pose breaks a limit.
+    /// its angle or the pose violates a limit.
     pub fn solve_if_allowed(&self, angles: [f64; 4]) -> Option<Solution> {
         let mut servos = self.servos().iter().zip(angles);
         if !servos.all(|(servo, angle)| servo.reaches(angle)) {
@@ -398,8 +398,8 @@ impl Robot {
     }
 
     /// Predicts the movement of the body while the servos go through these angles (deg, chassis frame, servo order), by
-    /// the contact model with rigid legs. Returns a result even if it depends on unmeasurable differences between the
-    /// pads.
+    /// the contact model with rigid legs. Returns a result even if it depends on differences between the pads that cannot
+    /// be measured.
     pub fn predict_travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .with_rigid_drive()
@@ -428,31 +428,31 @@ fn read_name<'a>(root: &Section<'a>) -> Checked<&'a str> {
     if name.is_empty() || name.len() > MAX_NAME_BYTES || !name.chars().all(is_allowed) {
         let message =
             format!("must be at most {MAX_NAME_BYTES} lower-case letters, digits and dashes");
-        return Err(Fault::new("name", message));
+        return Err(UnlocatedError::new("name", message));
     }
     Ok(name)
 }
 
-/// Makes the error for a robot whose section is too large. The message says how many bytes the waveforms, gaits and
-/// routines take.
-fn size_fault(content: &Content, bytes: usize) -> Fault {
+/// Makes the error for a robot whose section has too many `bytes`. The message says how many bytes the waveforms, gaits
+/// and routines take.
+fn size_error(content: &Content, bytes: usize) -> UnlocatedError {
     let excess_bytes = bytes - usize::from(SPACE_BYTES);
-    let waves = content.waves.len();
+    let wave_count = content.waves.len();
     let wave_bytes = std::mem::size_of_val(content.waves.as_slice());
-    let gaits = content.gaits.len();
-    let gait_bytes = gaits * size_of::<Gait>() + content.names.len();
-    let routines = content
+    let gait_count = content.gaits.len();
+    let gait_bytes = gait_count * size_of::<Gait>() + content.names.len();
+    let routine_count = content
         .gaits
         .iter()
         .filter(|gait| gait.is_routine())
         .count();
     let step_bytes = std::mem::size_of_val(content.steps.as_slice());
-    let routines_text = match routines {
+    let routine_text = match routine_count {
         0 => String::new(),
-        _ => format!(", {routines} of them routines, whose steps take {step_bytes}"),
+        _ => format!(", {routine_count} of them routines, whose steps take {step_bytes}"),
     };
     let message = format!(
-        "the robot takes {excess_bytes} bytes more than the {SPACE_BYTES} that the board has for it; {waves} waveforms take {wave_bytes}, {gaits} gaits and their names {gait_bytes}{routines_text}: leave out gaits, first those whose waveform no other has"
+        "the robot takes {excess_bytes} bytes more than the {SPACE_BYTES} that the board has for it; {wave_count} waveforms take {wave_bytes}, {gait_count} gaits and their names {gait_bytes}{routine_text}: leave out gaits, first those whose waveform no other has"
     );
-    Fault::new("gait", message)
+    UnlocatedError::new("gait", message)
 }

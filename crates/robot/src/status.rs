@@ -39,7 +39,7 @@ pub struct Status {
 }
 
 impl Status {
-    /// Reads the answer `ok gait=...`; `None` for any other line. Skips unknown keys.
+    /// Parses the answer `ok gait=...`; `None` for any other line. Skips unknown keys.
     #[must_use]
     pub fn parse(answer: &str) -> Option<Self> {
         let pairs = answer.strip_prefix("ok ")?;
@@ -114,7 +114,7 @@ impl Status {
     }
 }
 
-/// Reads a line `# t=<frame> pose=<angles>`: the frame and the servo angles, degrees. `None` for any other line.
+/// Parses a line `# t=<frame> pose=<angles>`: the frame and the servo angles, degrees. `None` for any other line.
 #[must_use]
 pub fn parse_pose_report(line: &str) -> Option<(u64, [f64; 4])> {
     let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
@@ -131,13 +131,14 @@ fn parse_angles(text: &str) -> Option<[f64; 4]> {
 mod tests {
     use super::*;
 
+    /// The answer of a robot that walks without a fault.
     const WALKING_STATUS: &str = "ok gait=arc-left phase=0.350 pose=138.59,41.41,318.60,221.40 \
         margin=0.812 speed=100 frames=1234 late=0 rx_lost=2 guard=clear fault=none \
         reset=external resets=3 vcc=5.02 rail=5.91";
 
     #[test]
-    fn a_status_is_read_and_shortened() {
-        let status = Status::parse(WALKING_STATUS).expect("it is a status");
+    fn a_status_is_parsed_and_summarised_in_one_line() {
+        let status = Status::parse(WALKING_STATUS).expect("the line is a status");
         assert!(status.is_moving());
         assert_eq!((status.phase, status.pace), (0.35, Some(100.0)));
         assert_eq!(
@@ -155,12 +156,12 @@ mod tests {
     fn a_fault_and_a_hold_by_the_guard_are_in_capitals() {
         let fault_status = WALKING_STATUS.replace("fault=none", "fault=supply");
         let line = Status::parse(&fault_status)
-            .expect("it is a status")
+            .expect("the line is a status")
             .status_line();
         assert!(line.contains("FAULT supply"), "{line}");
         let held_status = WALKING_STATUS.replace("clear", "held");
         let line = Status::parse(&held_status)
-            .expect("it is a status")
+            .expect("the line is a status")
             .status_line();
         assert!(line.contains("HELD by the guard"), "{line}");
     }
@@ -168,7 +169,7 @@ mod tests {
     #[test]
     fn a_board_without_a_robot_has_no_pose_and_shows_its_fault() {
         let line = "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0";
-        let status = Status::parse(line).expect("it is a status");
+        let status = Status::parse(line).expect("the line is a status");
         assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));
         assert_eq!(status.status_line(), "rest  FAULT robot");
     }

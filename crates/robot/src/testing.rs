@@ -14,9 +14,9 @@ pub fn robot_text(name: &str) -> String {
 /// Parses a robot's file with parts of its text replaced, each at its first occurrence.
 pub fn robot_with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
     let mut text = robot_text(name);
-    for (from, to) in changes {
-        assert!(text.contains(from), "{name}.toml has no {from:?}");
-        text = text.replacen(from, to, 1);
+    for (old, new) in changes {
+        assert!(text.contains(old), "{name}.toml has no {old:?}");
+        text = text.replacen(old, new, 1);
     }
     Robot::parse(&text)
 }
@@ -34,8 +34,8 @@ pub fn all_robots() -> impl Iterator<Item = (&'static str, Robot)> {
 /// Reads the part of a robot's file before its first gait, `stand`, so that a test can append other gaits.
 pub fn text_before_gaits(name: &str) -> String {
     let text = robot_text(name);
-    let gaits = text
+    let gaits_start = text
         .find("[gait.stand]")
         .expect("the file has the gait stand");
-    text[..gaits].to_string()
+    text[..gaits_start].to_string()
 }

@@ -1,5 +1,8 @@
+//! Tests of calibration files, console lines and transfers.
+
 use super::*;
 
+/// A calibration in which every setting differs from its default in some servo.
 fn example_calibration() -> Calibration {
     let servo_with = |trim| ServoSettings {
         trim,
@@ -39,16 +42,16 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
     let valid_text = example_calibration().to_toml();
     let error_text = |from: &str, to: &str| {
         assert!(valid_text.contains(from), "{from}");
-        let wrong_text = valid_text.replacen(from, to, 1);
+        let invalid_text = valid_text.replacen(from, to, 1);
         let error =
-            Calibration::parse(&wrong_text, "a.toml").expect_err("the changed text is invalid");
+            Calibration::parse(&invalid_text, "a.toml").expect_err("the changed text is invalid");
         error.to_string()
     };
-    let other_error = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml")
-        .expect_err("a robot file is no calibration");
+    let robot_file_error = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml")
+        .expect_err("a robot file is not a calibration");
     let sentence = "must be \"lizard calibration 1\": this is not a calibration that can be read";
     assert_eq!(
-        other_error.to_string(),
+        robot_file_error.to_string(),
         format!("a.toml: format {sentence}")
     );
     let line = 1 + valid_text
@@ -168,8 +171,8 @@ fn every_setting_is_read_from_the_answer_to_cal_and_set_by_a_console_line() {
 }
 
 #[test]
-fn another_scale_or_direction_keeps_the_neutral_pulse() {
-    // Change of the neutral pulse by the trim, us.
+fn changing_the_scale_or_the_direction_keeps_the_neutral_pulse_width() {
+    // The change of the neutral pulse width by the trim, us.
     let pulse_shift_us = |servo: ServoSettings| {
         let sign = if servo.dir == '+' { 1.0 } else { -1.0 };
         sign * servo.trim * servo.scale
@@ -209,16 +212,16 @@ fn calibrations_are_equivalent_only_if_all_settings_agree_but_limits_may_differ_
         |calibration| calibration.deadman = 1,
     ];
     for (index, change) in changes.into_iter().enumerate() {
-        let mut changed = example_calibration();
-        change(&mut changed);
+        let mut changed_calibration = example_calibration();
+        change(&mut changed_calibration);
         assert!(
-            !changed.is_equivalent_to(&example_calibration()),
+            !changed_calibration.is_equivalent_to(&example_calibration()),
             "change {index}"
         );
     }
-    let mut turned = example_calibration();
-    turned.servos[2].limit = [48.59 - 360.0, 228.59 - 360.0];
-    assert!(turned.is_equivalent_to(&example_calibration()));
+    let mut turned_calibration = example_calibration();
+    turned_calibration.servos[2].limit = [48.59 - 360.0, 228.59 - 360.0];
+    assert!(turned_calibration.is_equivalent_to(&example_calibration()));
 }
 
 /// Sends the lines of a transfer to a robot that refuses some of them. Returns the lines that were sent, and true if
@@ -248,19 +251,19 @@ fn refused_lines_are_sent_again_after_the_others_and_once_more_after_factory() {
     assert_eq!(simulate_transfer(|_, _| false), (lines.clone(), true));
     // A trim that is accepted only after the limit.
     let (sent_lines, is_done) = simulate_transfer(|line, accepted| {
-        line.starts_with("trim 1") && !accepted.iter().any(|other| other.starts_with("limit 1"))
+        line.starts_with("trim 1") && !accepted.iter().any(|sent| sent.starts_with("limit 1"))
     });
     assert!(is_done);
     assert_eq!(sent_lines[18..], ["trim 1 -3.25"]);
     // A scale that is accepted only after `factory`, with robot.toml's settings.
     let needs_factory = |line: &str, accepted: &[String]| {
-        line.starts_with("scale 2") && !accepted.iter().any(|other| other == "factory")
+        line.starts_with("scale 2") && !accepted.iter().any(|sent| sent == "factory")
     };
     let (sent_lines, is_done) = simulate_transfer(needs_factory);
     assert!(is_done);
     assert_eq!(sent_lines[18..20], ["scale 2 10.00", "factory"]);
     assert_eq!(sent_lines[20..], lines);
-    // A line that is never accepted is given up after one more round from `factory`.
+    // A line that is never accepted is given up after the round that starts with `factory`.
     let (sent_lines, is_done) = simulate_transfer(|line, _| line.starts_with("limit 4"));
     assert!(!is_done);
     assert_eq!(

@@ -10,7 +10,7 @@ use crate::tables::Tables;
 pub struct TableError {
     /// Largest error over all servos, deg.
     pub max: f64,
-    /// Root mean square over all servos, deg.
+    /// Root mean square of the errors of all servos, deg.
     pub rms: f64,
     /// Index of the servo with the largest error, 0 to 3.
     pub servo: usize,
@@ -21,7 +21,7 @@ pub struct TableError {
 /// Number of phases in a cycle that the firmware distinguishes.
 pub(crate) const PHASE_COUNT: usize = CYCLE16 as usize;
 
-/// Computes the error of the tables of gait number `index` over `phase_count` evenly spaced phases, where
+/// Computes the error of the tables of the gait with this index over `phase_count` evenly spaced phases, where
 /// `phase_count` divides [`PHASE_COUNT`].
 pub(crate) fn table_error(
     gait: &Gait,
@@ -39,7 +39,7 @@ pub(crate) fn table_error(
     for i in 0..phase_count {
         let table_phase = (i * (PHASE_COUNT / phase_count)) as u16;
         let phase = f64::from(table_phase) / PHASE_COUNT as f64;
-        let table_angles = gait.table_angles(tables.sweeps(index, table_phase));
+        let table_angles = gait.angles_from_table(tables.sweeps(index, table_phase));
         let exact_angles = gait.angles(phase);
         for servo in 0..4 {
             let deviation = (table_angles[servo] - exact_angles[servo]).abs();

@@ -12,7 +12,7 @@ use lizard_kinematics::{Check, Solution, Violation};
 use crate::checks::accuracy::{self, PHASE_COUNT};
 use crate::gaits::Gait;
 use crate::measures::servo::SERVO_NAMES;
-use crate::measures::{Measures, consequence, open_loop_consequence};
+use crate::measures::{Measures, consequence, unclosed_loop_consequence};
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
 
@@ -45,7 +45,7 @@ pub struct PeakSpeed {
     pub phase: f64,
 }
 
-/// The smallest margins, the range of the strokes and the highest speed in a checked gait.
+/// The smallest margins, the range of the slider travels and the highest speed in a checked gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Audit {
     /// Smallest type-2 margin, head and tail.
@@ -76,6 +76,7 @@ impl Audit {
 }
 
 impl LeastMargin {
+    /// The margin before the first sample is added.
     const fn unset(check: Check) -> Self {
         Self {
             check,
@@ -85,10 +86,10 @@ impl LeastMargin {
     }
 }
 
-/// The message about a limit that a gait breaks.
-pub(crate) struct LimitBreach {
+/// The message about a limit that a gait violates.
+pub(crate) struct LimitViolation {
     /// The consequence for the robot, in words without figures.
-    pub meaning: String,
+    pub consequence: String,
     /// The figures, and the phase at which they occur.
     pub problem: String,
 }
@@ -96,16 +97,16 @@ pub(crate) struct LimitBreach {
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// Returns the first sample that is outside a servo's travel or whose loops do not close; else the worst violation
-/// of the limit that is broken first; else the first pose at which the firmware's guard would stop the gait; else a
-/// servo speed that is too high, or a table that is too coarse.
+/// Returns the first sample that is outside a servo's travel or whose loops do not close; if there is none, the worst
+/// violation of the limit that is violated first; then the first pose at which the firmware's guard would stop the gait;
+/// then a servo speed that is too high, or a table that is too coarse.
 pub(crate) fn check_gait(
     gait: &Gait,
     index: usize,
     tables: &Tables,
-    robot: &Measures,
+    measures: &Measures,
     core_robot: &lizard_core::numbers::robot::Robot<'_>,
-) -> Result<Audit, LimitBreach> {
+) -> Result<Audit, LimitViolation> {
     let mut audit = Audit {
         peak_speed: find_peak_speed(gait),
         ..Audit::EMPTY
@@ -115,19 +116,19 @@ pub(crate) fn check_gait(
     let at_phase = |phase: f64| format!("at phase {phase:.4}");
     for phase in phases_to_check(&tables.gaits[index]) {
         let sweeps = tables.sweeps(index, phase);
-        let angles = gait.table_angles(sweeps);
+        let angles = gait.angles_from_table(sweeps);
         let sweeps = Pose(sweeps.map(Sweep));
         let phase = f64::from(phase) / PHASES_PER_CYCLE;
-        check_travels(robot, angles, phase)?;
+        check_travels(measures, angles, phase)?;
         if let Some(hazard) = Clearance::of(core_robot, &sweeps).first_hazard(core_robot) {
             guard_stop.get_or_insert((phase, corresponding_check(&hazard)));
         }
-        let solution = robot.lizard.solve(&angles.into());
-        let solution = solution.map_err(|fault| LimitBreach {
-            meaning: open_loop_consequence(fault.part),
-            problem: format!("{fault} {}", at_phase(phase)),
+        let solution = measures.lizard.solve(&angles.into());
+        let solution = solution.map_err(|infeasible| LimitViolation {
+            consequence: unclosed_loop_consequence(infeasible.part),
+            problem: format!("{infeasible} {}", at_phase(phase)),
         })?;
-        for violation in robot.limits.violations(&solution) {
+        for violation in measures.limits.violations(&solution) {
             worst_violation = Some(match worst_violation {
                 Some(earlier) if !is_worse_violation(violation, earlier.1) => earlier,
                 _ => (phase, violation),
@@ -136,14 +137,14 @@ pub(crate) fn check_gait(
         audit.add(&solution, phase);
     }
     if let Some((phase, violation)) = worst_violation {
-        return Err(LimitBreach {
-            meaning: consequence(violation.check),
+        return Err(LimitViolation {
+            consequence: consequence(violation.check),
             problem: format!("{violation} {}", at_phase(phase)),
         });
     }
     if let Some((phase, stopping_check)) = guard_stop {
-        return Err(LimitBreach {
-            meaning: consequence(stopping_check),
+        return Err(LimitViolation {
+            consequence: consequence(stopping_check),
             problem: format!(
                 "margin or travel {stopping_check} is so near to its limit {} that the firmware's integers take it to be beyond; leave it a little room",
                 at_phase(phase)
@@ -155,10 +156,10 @@ pub(crate) fn check_gait(
         speed,
         phase,
     } = audit.peak_speed;
-    let limit = robot.speed_limits.gait_slew;
+    let limit = measures.speed_limits.gait_slew;
     if speed > limit {
-        return Err(LimitBreach {
-            meaning: format!("servo {} would have to turn too fast", SERVO_NAMES[servo]),
+        return Err(LimitViolation {
+            consequence: format!("servo {} would have to turn too fast", SERVO_NAMES[servo]),
             problem: format!(
                 "{speed:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
                 at_phase(phase)
@@ -167,8 +168,8 @@ pub(crate) fn check_gait(
     }
     let error = accuracy::table_error(gait, index, tables, CHECKED_PHASES);
     if error.max > MAX_TABLE_ERROR_DEG {
-        return Err(LimitBreach {
-            meaning: format!(
+        return Err(LimitViolation {
+            consequence: format!(
                 "servo {} would have to turn too sharply",
                 SERVO_NAMES[error.servo]
             ),
@@ -195,7 +196,7 @@ fn corresponding_check(hazard: &Hazard) -> Check {
     }
 }
 
-/// True if a violation breaks the same limit as an earlier violation, but by more.
+/// True if a violation exceeds the same limit as an earlier violation, but by more.
 fn is_worse_violation(violation: Violation, earlier: Violation) -> bool {
     let excess_of = |v: Violation| (v.value - v.limit).abs();
     violation.check == earlier.check && excess_of(violation) > excess_of(earlier)
@@ -216,16 +217,16 @@ fn phases_to_check(table: &TableGait) -> Vec<u16> {
 }
 
 /// Refuses servo angles outside a servo's travel.
-fn check_travels(robot: &Measures, angles: [f64; 4], phase: f64) -> Result<(), LimitBreach> {
+fn check_travels(measures: &Measures, angles: [f64; 4], phase: f64) -> Result<(), LimitViolation> {
     // Both the limits of the travel and the sample are rounded to an angle step.
     const STEP_DEG: f64 = 1.0 / STEPS_PER_DEGREE;
-    for ((servo, angle), name) in robot.servos.iter().zip(angles).zip(SERVO_NAMES) {
+    for ((servo, angle), name) in measures.servos.iter().zip(angles).zip(SERVO_NAMES) {
         let (min, max) = servo.travel();
         let sweep = angle - servo.neutral;
         if sweep < min - STEP_DEG || sweep > max + STEP_DEG {
             let (min, max) = (servo.neutral + min, servo.neutral + max);
-            return Err(LimitBreach {
-                meaning: format!("servo {name} would have to turn farther than it can"),
+            return Err(LimitViolation {
+                consequence: format!("servo {name} would have to turn farther than it can"),
                 problem: format!(
                     "{angle:.2} deg at phase {phase:.4} is outside its travel of {min:.2} to {max:.2} deg"
                 ),
@@ -241,9 +242,9 @@ fn find_peak_speed(gait: &Gait) -> PeakSpeed {
     let mut peak = Audit::EMPTY.peak_speed;
     for i in 0..SPEED_PHASES {
         let phase = i as f64 / SPEED_PHASES as f64;
-        let (from, to) = (gait.sweeps(phase), gait.sweeps(phase + phase_per_frame));
+        let (sweeps, next_sweeps) = (gait.sweeps(phase), gait.sweeps(phase + phase_per_frame));
         for servo in 0..4 {
-            let speed = (to[servo] - from[servo]).abs() * FRAMES_PER_SECOND;
+            let speed = (next_sweeps[servo] - sweeps[servo]).abs() * FRAMES_PER_SECOND;
             if speed > peak.speed {
                 peak = PeakSpeed {
                     servo,

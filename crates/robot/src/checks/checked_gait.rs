@@ -8,8 +8,8 @@ use lizard_core::numbers::units::phase16;
 use lizard_kinematics::Pose;
 
 use crate::checks::accuracy::{self, TableError};
-use crate::checks::audit::{self, Audit, LimitBreach};
-use crate::file::{Checked, Fault};
+use crate::checks::audit::{self, Audit, LimitViolation};
+use crate::file::{Checked, UnlocatedError};
 use crate::gaits::{Bars, Gait, Stride, command_of};
 use crate::measures::Measures;
 use crate::measures::servo::FORWARD_TURN_SIGN;
@@ -19,6 +19,7 @@ use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 /// A gait of robot.toml whose every sample has been checked, in floating point and in the firmware's tables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedGait {
+    /// The gait in floating point.
     gait: Gait,
     /// Index of the gait in robot.toml and in the tables.
     index: usize,
@@ -36,11 +37,16 @@ impl CheckedGait {
         core_robot: &lizard_core::numbers::robot::Robot,
     ) -> Checked<Self> {
         let audit = audit::check_gait(&gait, index, tables, measures, core_robot);
-        let audit = audit.map_err(|LimitBreach { meaning, problem }| {
-            let name = &gait.name;
-            Fault::clause(format!("gait.{name}"), problem)
-                .with_meaning(format!("in \"{name}\" {meaning}"))
-        })?;
+        let audit = audit.map_err(
+            |LimitViolation {
+                 consequence,
+                 problem,
+             }| {
+                let name = &gait.name;
+                UnlocatedError::clause(format!("gait.{name}"), problem)
+                    .with_consequence(format!("in \"{name}\" {consequence}"))
+            },
+        )?;
         Ok(Self {
             gait,
             index,
@@ -54,7 +60,7 @@ impl CheckedGait {
         &self.tables.gaits[self.index]
     }
 
-    /// Name of the gait.
+    /// The gait's name in robot.toml.
     pub fn name(&self) -> &str {
         &self.gait.name
     }
@@ -102,7 +108,7 @@ impl CheckedGait {
         self.gait.neutral
     }
 
-    /// The phase, 0 to 1, a number of seconds after a start at phase 0, at full speed.
+    /// The phase (0 to 1) a given time after the gait started at phase 0, in seconds at full speed.
     pub fn phase_at(&self, seconds: f64) -> f64 {
         self.gait.phase_at(seconds)
     }
@@ -130,10 +136,10 @@ impl CheckedGait {
 
     /// The servo angles at a phase in 1/65536 cycle as the firmware computes them: deg, chassis frame, servo order.
     pub fn table_angles(&self, phase: u16) -> [f64; 4] {
-        self.gait.table_angles(self.table_sweeps(phase))
+        self.gait.angles_from_table(self.table_sweeps(phase))
     }
 
-    /// The frames of one cycle at full speed, beginning at phase 0: each frame's time in s and its phase in 1/65536
+    /// The frames of one cycle at full speed, starting at phase 0: each frame's time in s and its phase in 1/65536
     /// cycle. The last frame is the first one at or after the end of the cycle.
     pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
         let increment = self.table().increment;

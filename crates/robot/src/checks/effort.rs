@@ -1,8 +1,8 @@
 //! The effort of the servos in a gait: their torque and speed compared with the torque-speed lines of their motors.
 //!
 //! A motor's line runs from its stall torque to its no-load speed. A servo that needs a torque at a speed uses the
-//! share torque / stall + speed / no-load speed of its line; this is also the share of the supply voltage that its
-//! motor needs. Above 1 the servo falls behind its pulses. Friction of pads, pins and sliders takes the same torque
+//! share torque / stall torque + speed / no-load speed of its line; this is also the share of the supply voltage that
+//! its motor needs. Above 1 the servo falls behind its pulses. Friction of pads, pins and sliders takes the same torque
 //! at any pace; the rotor's inertia takes less at a lower pace.
 
 use lizard_contact::{Ground, Motor, Motors, Walker};
@@ -45,7 +45,7 @@ impl Effort {
         if !gait.has_movement() {
             return Self { servos };
         }
-        // The motors keep their gain and damping, but have no limits; the rotor is added afterwards.
+        // The motors keep their gain and damping, but have no limits; the rotor's torque is added afterwards.
         let strong_motors = Motors {
             per_servo: motors.per_servo.map(|motor| Motor {
                 stall_torque: motor.stall_torque * STRONG_FACTOR,
@@ -62,19 +62,19 @@ impl Effort {
         let mut walker = Walker::new(*ground, sweeps_at(0.0));
         let step_count = step_count as usize;
         for step in 1..=2 * step_count {
-            let (angles_before, target) = (walker.servo_sweeps(), sweeps_at(step as f64));
+            let (previous_sweeps, target) = (walker.servo_sweeps(), sweeps_at(step as f64));
             walker.drive(target.map(Some), step_seconds, &strong_motors);
             if step <= step_count {
                 continue;
             }
-            let (last_target, next_target) =
+            let (previous_target, next_target) =
                 (sweeps_at(step as f64 - 1.0), sweeps_at(step as f64 + 1.0));
-            let angles = walker.servo_sweeps();
+            let sweeps = walker.servo_sweeps();
             for (i, (motor, samples)) in servos.iter_mut().enumerate() {
-                let speed = (angles[i] - angles_before[i]) / step_seconds;
-                let torque = motor.stall_torque / motor.full_torque_error * (target[i] - angles[i]);
+                let speed = (sweeps[i] - previous_sweeps[i]) / step_seconds;
+                let torque = motor.stall_torque / motor.full_torque_error * (target[i] - sweeps[i]);
                 let second_difference =
-                    (next_target[i] - 2.0 * target[i] + last_target[i]).to_radians();
+                    (next_target[i] - 2.0 * target[i] + previous_target[i]).to_radians();
                 samples.push(Sample {
                     load_torque: torque - motor.damping() * speed.to_radians(),
                     rotor_torque: motor.inertia() * second_difference

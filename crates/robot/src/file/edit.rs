@@ -1,4 +1,4 @@
-//! Edits of single values in the text of a robot.toml. Comments, blanks and all other lines stay as they are.
+//! Edits of single values in the text of a robot.toml. Comments, white space and all other lines stay as they are.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -61,7 +61,7 @@ pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoS
     })
 }
 
-/// Adds the comment `# word rest` at the end of a key's line. It replaces a comment that begins with the same word.
+/// Adds the comment `# word rest` at the end of a key's line, or replaces a comment there that begins with `word`.
 ///
 /// # Errors
 /// Fails if the text is not TOML or does not have the key.
@@ -72,12 +72,12 @@ pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<Str
     let start = value.span().end;
     let line = &text[start..line_end(text, start)];
     let comment = format!(" # {word} ");
-    let kept_text = line.find(&comment).map_or(line, |old| &line[..old]);
+    let kept_text = line.find(&comment).map_or(line, |index| &line[..index]);
     let end = start + kept_text.trim_end().len();
-    let blanks = &line[line.trim_end().len()..];
+    let trailing_space = &line[line.trim_end().len()..];
     let text_after = &text[start + line.len()..];
     Ok(format!(
-        "{}{comment}{rest}{blanks}{text_after}",
+        "{}{comment}{rest}{trailing_space}{text_after}",
         &text[..end]
     ))
 }
@@ -106,9 +106,9 @@ fn with_value(
         if !has_type(old_value.get_ref()) {
             return Err(key_error());
         }
-        let mut changed = text.to_string();
-        changed.replace_range(old_value.span(), value);
-        return Ok(changed);
+        let mut new_text = text.to_string();
+        new_text.replace_range(old_value.span(), value);
+        return Ok(new_text);
     }
     if !OPTIONAL_KEYS.contains(&key) {
         return Err(key_error());
@@ -150,7 +150,7 @@ pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
     };
     let start = text[..value.span().start]
         .rfind('\n')
-        .map_or(0, |line| line + 1);
+        .map_or(0, |line_break| line_break + 1);
     let end = (line_end(text, value.span().end) + 1).min(text.len());
     if !text[start..end].trim_start().starts_with(name) {
         return Err(key_error());
@@ -158,7 +158,7 @@ pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
     Ok(text[..start].to_string() + &text[end..])
 }
 
-/// Adds the table of a gait: in place of the gait with the same name, or else at the end of the text.
+/// Adds the table of a gait: in place of the gait with the same name if there is one, otherwise at the end of the text.
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     let (mut result, is_replaced) = replace_gait(text, name, table);
     if !is_replaced {
@@ -199,7 +199,7 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     (result, is_replaced)
 }
 
-/// A routine as written in the file, valid or not.
+/// A routine as written in the file, whether valid or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct WrittenRoutine {
@@ -242,9 +242,9 @@ pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     if let Ok(document) = DeTable::parse(text)
         && let Some(old_value) = find_value(document.get_ref(), &format!("routine.{name}.steps"))
     {
-        let mut changed = text.to_string();
-        changed.replace_range(old_value.span(), &steps);
-        return changed;
+        let mut new_text = text.to_string();
+        new_text.replace_range(old_value.span(), &steps);
+        return new_text;
     }
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-';
     let key = if name.is_empty() || !name.chars().all(is_bare) {
@@ -268,7 +268,7 @@ fn find_value<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeVal
 fn line_end(text: &str, start: usize) -> usize {
     text[start..]
         .find('\n')
-        .map_or(text.len(), |line| start + line)
+        .map_or(text.len(), |length| start + length)
 }
 
 #[cfg(test)]
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_is_replaced_as_a_whole_or_added() {
+    fn a_list_is_replaced_as_a_whole_or_a_missing_one_is_added() {
         let changed = with_numbers("[body]\ncentre = [0, 0] # mm\n", "body.centre", &[1.5, 0.0]);
         assert_eq!(changed, Ok("[body]\ncentre = [1.5, 0.0] # mm\n".to_owned()));
         let added = with_numbers("[body]\nmass = 250.0\n", "body.centre", &[1.5, -2.0]);
@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn a_string_is_replaced_or_added() {
+    fn a_string_is_replaced_or_a_missing_one_is_added() {
         const DRIVE: &str = "[leg.drive] # bars\nkind = \"rigid\" # or not\n";
         let changed = with_string(DRIVE, "leg.drive.kind", "strut").expect("the key can be set");
         assert_eq!(changed, DRIVE.replace("rigid", "strut"));
@@ -404,6 +404,7 @@ mod tests {
             .collect()
     }
 
+    /// Copies steps to owned strings.
     fn to_strings(steps: &[&str]) -> Vec<String> {
         steps.iter().map(ToString::to_string).collect()
     }

@@ -13,7 +13,7 @@ pub struct Error {
     pub key: String,
     /// The consequence of the mistake for the robot, without keys and figures; `None` if `problem` states it.
     pub meaning: Option<String>,
-    /// The message without file, line, key and meaning.
+    /// The message without file, line, key and consequence.
     pub problem: String,
     /// True if `problem` is a clause with its own subject; false if the key is its subject.
     pub(crate) is_clause: bool,
@@ -28,9 +28,9 @@ impl fmt::Display for Error {
         if !self.key.is_empty() {
             location += &format!(": {}", self.key);
         }
-        // The reader first wants to know what is wrong with the robot, then where the file says so.
-        if let Some(meaning) = &self.meaning {
-            return write!(f, "{meaning}: {} ({location})", self.problem);
+        // The consequence for the robot comes first, because the reader needs it before the location.
+        if let Some(consequence) = &self.meaning {
+            return write!(f, "{consequence}: {} ({location})", self.problem);
         }
         let separator = if self.key.is_empty() || self.is_clause {
             ":"
@@ -43,31 +43,34 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// A mistake at a key, before its file and line are known.
+/// A mistake at a key whose file and line are not known yet.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Fault {
+pub(crate) struct UnlocatedError {
     /// Full name of the key; empty if the mistake concerns the whole file.
     pub key: String,
-    meaning: Option<String>,
+    /// See [`Error::meaning`].
+    consequence: Option<String>,
+    /// See [`Error::problem`].
     problem: String,
+    /// See [`Error::is_clause`].
     is_clause: bool,
 }
 
 /// A checked value, or the mistake that was found in it.
-pub(crate) type Checked<T> = Result<T, Fault>;
+pub(crate) type Checked<T> = Result<T, UnlocatedError>;
 
-impl Fault {
-    /// A mistake whose message has the key as its subject: "`key` is 3; it must be ...".
+impl UnlocatedError {
+    /// A mistake whose message has the key as its subject, such as `servo.A1.pin is 3; it must be ...`.
     pub fn new(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             key: key.into(),
-            meaning: None,
+            consequence: None,
             problem: problem.into(),
             is_clause: false,
         }
     }
 
-    /// A mistake whose message has its own subject: "`key`: the point ...".
+    /// A mistake whose message has its own subject, such as `gait.look: the point ...`.
     pub fn clause(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             is_clause: true,
@@ -75,10 +78,10 @@ impl Fault {
         }
     }
 
-    /// Adds the consequence for the robot to the mistake: "in "walk" the left front leg would lock".
-    pub fn with_meaning(self, meaning: impl Into<String>) -> Self {
+    /// Adds the consequence for the robot to the mistake, such as `in "walk" the left front leg would lock`.
+    pub fn with_consequence(self, consequence: impl Into<String>) -> Self {
         Self {
-            meaning: Some(meaning.into()),
+            consequence: Some(consequence.into()),
             ..self
         }
     }
@@ -98,14 +101,14 @@ impl Fault {
             file,
             line,
             key: self.key,
-            meaning: self.meaning,
+            meaning: self.consequence,
             problem: self.problem,
             is_clause: self.is_clause,
         }
     }
 }
 
-/// Formats a number as its author wrote it, or with an exponent if it would otherwise have many zeros.
+/// Formats a number with the fewest digits that identify it, or with an exponent if it would otherwise have many zeros.
 pub(crate) fn format_number(value: f64) -> String {
     if value != 0.0 && !(1e-6..1e9).contains(&value.abs()) {
         format!("{value:e}")
@@ -114,7 +117,7 @@ pub(crate) fn format_number(value: f64) -> String {
     }
 }
 
-/// Returns a hint for a word that is not allowed: the most similar allowed word, or else all of them.
+/// Returns a hint for a word that is not allowed: the most similar allowed word, otherwise all of them.
 pub(crate) fn hint(word: &str, allowed: &[&str]) -> String {
     let nearest = allowed
         .iter()
@@ -140,9 +143,9 @@ fn levenshtein_distance(a: &str, b: &str) -> usize {
         let mut diagonal = row[0];
         row[0] = i + 1;
         for j in 0..b.len() {
-            let substituted = diagonal + usize::from(letter != b[j]);
+            let substitution_cost = diagonal + usize::from(letter != b[j]);
             diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+            row[j + 1] = substitution_cost.min(row[j] + 1).min(diagonal + 1);
         }
     }
     row[b.len()]

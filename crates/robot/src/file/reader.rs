@@ -4,7 +4,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::error::{Checked, Error, Fault, hint};
+use crate::file::error::{Checked, Error, UnlocatedError, hint};
 use crate::file::syntax::explain_mistake;
 
 /// Parses the text of a robot file and reads it with `read`. Skips a byte order mark at the start.
@@ -15,19 +15,19 @@ pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Res
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let file = "robot.toml".to_string();
     let line_of = |offset: usize| text[..offset].matches('\n').count() + 1;
-    let document = DeTable::parse(text).map_err(|fault| {
-        let offset = fault.span().map(|span| span.start);
-        let message = explain_mistake(text, offset.unwrap_or(text.len()), fault.message());
-        Fault::new("", message).in_file(file.clone(), offset.map(line_of))
+    let document = DeTable::parse(text).map_err(|error| {
+        let offset = error.span().map(|span| span.start);
+        let message = explain_mistake(text, offset.unwrap_or(text.len()), error.message());
+        UnlocatedError::new("", message).in_file(file.clone(), offset.map(line_of))
     })?;
     let table = document.get_ref();
-    read(table).map_err(|fault| {
-        let line = key_position(table, &fault.key).map(line_of);
-        fault.in_file(file, line)
+    read(table).map_err(|error| {
+        let line = key_position(table, &error.key).map(line_of);
+        error.in_file(file, line)
     })
 }
 
-/// The position in the text of a key, or of the innermost existing table in its name; `None` if no table of the name
+/// The byte offset in the text of a key, or of the innermost existing table in its name; `None` if no table of the name
 /// exists.
 fn key_position(mut table: &DeTable, key: &str) -> Option<usize> {
     let (mut rest, mut innermost_start) = (key, None);
@@ -80,6 +80,7 @@ thread_local! {
 pub(crate) struct Section<'a> {
     /// Full name of the table, such as `servo.A1`; empty for the file itself.
     pub key: String,
+    /// The contents of the table.
     table: &'a DeTable<'a>,
 }
 
@@ -107,7 +108,7 @@ impl<'a> Section<'a> {
                 key: self.full_key(name),
                 table,
             }),
-            value => Err(self.wrong_type_fault(name, value, "a table")),
+            value => Err(self.wrong_type_error(name, value, "a table")),
         }
     }
 
@@ -121,18 +122,18 @@ impl<'a> Section<'a> {
         match self.key_names().into_iter().find(is_unknown) {
             Some(name) => {
                 let hint = hint(name, allowed);
-                Err(self.fault(name, format!("is not a known key; {hint}")))
+                Err(self.error(name, format!("is not a known key; {hint}")))
             }
             None => Ok(self),
         }
     }
 
     /// Refuses the keys `names`, which belong to an earlier version of the file; `instead` says what to write.
-    pub fn refuse_moved_keys(&self, names: &[&str], instead: &str) -> Checked<()> {
+    pub fn refuse_former_keys(&self, names: &[&str], instead: &str) -> Checked<()> {
         match names.iter().find(|name| self.has_key(name)) {
             Some(name) => {
                 let message = format!("is not read any more; write {instead}");
-                Err(self.fault(name, message))
+                Err(self.error(name, message))
             }
             None => Ok(()),
         }
@@ -159,9 +160,9 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Makes a mistake at a key of this table.
-    pub fn fault(&self, name: &str, problem: impl Into<String>) -> Fault {
-        Fault::new(self.full_key(name), problem)
+    /// Makes the error for a mistake at a key of this table.
+    pub fn error(&self, name: &str, problem: impl Into<String>) -> UnlocatedError {
+        UnlocatedError::new(self.full_key(name), problem)
     }
 
     /// Reads a number from `min` to `max`, both included.
@@ -171,7 +172,7 @@ impl<'a> Section<'a> {
         const EXPECTED_TYPE: &str = "a number";
         let value = self.required_value(name, EXPECTED_TYPE)?;
         let value = to_decimal_number(value)
-            .ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))?;
+            .ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))?;
         self.require_in_range(name, value, (min, max), unit)
     }
 
@@ -193,13 +194,13 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses the `value` of a key unless it is less than `limit`, the value of the key `other` in the same table.
-    pub fn require_less(&self, name: &str, value: f64, other: &str, limit: f64) -> Checked<()> {
+    /// Refuses the `value` of a key unless it is less than `limit`, the value of the key `limit_key` in the same table.
+    pub fn require_less(&self, name: &str, value: f64, limit_key: &str, limit: f64) -> Checked<()> {
         if value < limit {
             return Ok(());
         }
-        let message = format!("is {value}; it must be less than {other}, which is {limit}");
-        Err(self.fault(name, message))
+        let message = format!("is {value}; it must be less than {limit_key}, which is {limit}");
+        Err(self.error(name, message))
     }
 
     /// Reads a string.
@@ -207,7 +208,7 @@ impl<'a> Section<'a> {
         const EXPECTED_TYPE: &str = "a string";
         let value = self.required_value(name, EXPECTED_TYPE)?;
         let text = value.as_str();
-        text.ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))
+        text.ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))
     }
 
     /// Reads an array of exactly `N` numbers from `min` to `max`.
@@ -226,7 +227,7 @@ impl<'a> Section<'a> {
         };
         let value = self.required_value(name, expected_type)?;
         let DeValue::Array(array) = value else {
-            return Err(self.wrong_type_fault(name, value, expected_type));
+            return Err(self.wrong_type_error(name, value, expected_type));
         };
         let numbers: Option<Vec<f64>> = array
             .iter()
@@ -234,7 +235,7 @@ impl<'a> Section<'a> {
             .collect();
         let Some(Ok(numbers)) = numbers.map(<[f64; N]>::try_from) else {
             let message = format!("is an array of {}; it must be {expected_type}", array.len());
-            return Err(self.fault(name, message));
+            return Err(self.error(name, message));
         };
         for value in numbers {
             self.require_in_range(name, value, (min, max), unit)?;
@@ -249,7 +250,7 @@ impl<'a> Section<'a> {
         let strings = value
             .as_array()
             .and_then(|array| array.iter().map(|item| item.get_ref().as_str()).collect());
-        strings.ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))
+        strings.ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))
     }
 
     /// Reads an array of tables that may have only the keys `allowed`; empty if the key is left out.
@@ -262,7 +263,7 @@ impl<'a> Section<'a> {
         }
         let value = self.required_value(name, EXPECTED_TYPE)?;
         let items = value.as_array();
-        let items = items.ok_or_else(|| self.wrong_type_fault(name, value, EXPECTED_TYPE))?;
+        let items = items.ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))?;
         let read_section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
             let name = format!("{name}[{i}]");
             match item.get_ref() {
@@ -271,7 +272,7 @@ impl<'a> Section<'a> {
                     table,
                 }
                 .require_known_keys(allowed),
-                value => Err(self.wrong_type_fault(&name, value, "a table")),
+                value => Err(self.wrong_type_error(&name, value, "a table")),
             }
         };
         items.iter().enumerate().map(read_section).collect()
@@ -293,11 +294,11 @@ impl<'a> Section<'a> {
         self.record_read(name, read);
     }
 
-    /// Returns the value of a key; a missing key is a mistake.
+    /// Returns the value of a key; refuses a missing key.
     fn required_value(&self, name: &str, expected_type: &str) -> Checked<&'a DeValue<'a>> {
-        let missing_fault = || self.fault(name, format!("is missing; it must be {expected_type}"));
+        let missing_error = || self.error(name, format!("is missing; it must be {expected_type}"));
         let value = self.table.get(name).map(Spanned::get_ref);
-        value.ok_or_else(missing_fault)
+        value.ok_or_else(missing_error)
     }
 
     /// Returns a key's value if it is in a range, both limits included; refuses it otherwise.
@@ -310,12 +311,17 @@ impl<'a> Section<'a> {
     ) -> Checked<f64> {
         match (range.0..=range.1).contains(&value) {
             true => Ok(value),
-            false => Err(Fault::out_of_range(self.full_key(name), value, range, unit)),
+            false => Err(UnlocatedError::out_of_range(
+                self.full_key(name),
+                value,
+                range,
+                unit,
+            )),
         }
     }
 
-    /// Returns the mistake for a value of a type other than expected.
-    fn wrong_type_fault(&self, name: &str, value: &DeValue, expected_type: &str) -> Fault {
+    /// Makes the error for a value of the wrong type.
+    fn wrong_type_error(&self, name: &str, value: &DeValue, expected_type: &str) -> UnlocatedError {
         let found_type = match value {
             DeValue::String(text) => format!("the string \"{text}\""),
             DeValue::Integer(number) => number.to_string(),
@@ -325,7 +331,7 @@ impl<'a> Section<'a> {
             DeValue::Array(_) => "an array".to_string(),
             DeValue::Table(_) => "a table".to_string(),
         };
-        self.fault(name, format!("is {found_type}; it must be {expected_type}"))
+        self.error(name, format!("is {found_type}; it must be {expected_type}"))
     }
 }
 

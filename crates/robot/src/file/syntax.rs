@@ -4,7 +4,7 @@
 //! read the mistake itself: a missing value, a decimal comma, or a unit after a number. So this
 //! module checks the line for such mistakes. If it finds none, the parser's message is kept.
 
-/// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own.
+/// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own message.
 pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
     let line_index = text
         .get(..offset)

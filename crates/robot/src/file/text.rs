@@ -15,15 +15,15 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)
         .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(|fault| format!("cannot be read: {fault}"))?;
+        .map_err(|error| format!("cannot be read: {error}"))?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         let mib = MAX_FILE_BYTES >> 20;
         return Err(format!(
             "is longer than {mib} MiB, so it is not a robot file"
         ));
     }
-    String::from_utf8(bytes).map_err(|fault| {
-        let valid_bytes = &fault.as_bytes()[..fault.utf8_error().valid_up_to()];
+    String::from_utf8(bytes).map_err(|error| {
+        let valid_bytes = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = valid_bytes.iter().filter(|&&byte| byte == b'\n').count() + 1;
         format!("is not UTF-8 text: line {line} contains other bytes")
     })

@@ -5,7 +5,7 @@ use crate::gaits::gait::Gait;
 use crate::gaits::waveform::Waveform;
 use crate::measures::servo::LEG_NAMES;
 
-/// A gait whose legs have one waveform, each with its own start and gain.
+/// A gait whose legs share one waveform, each with its own start and gain.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bars {
@@ -86,7 +86,7 @@ impl Bars {
         reversed
     }
 
-    /// Writes the gait as a table of robot.toml, rounded to thousandths.
+    /// Returns the gait as a table of robot.toml, with numbers rounded to thousandths.
     pub fn to_toml(&self) -> String {
         let format_legs = |values: [f64; 4]| {
             let entries = LEG_NAMES.iter().zip(values);

@@ -7,7 +7,7 @@ use lizard_core::memory::settings::gait_key;
 use lizard_core::numbers::gaits::{MAX_GAITS, MAX_NAME_BYTES};
 use lizard_kinematics::End;
 
-use crate::file::{Checked, Fault, Section, hint};
+use crate::file::{Checked, Section, UnlocatedError, hint};
 use crate::gaits::gait::{Gait, Stride};
 use crate::gaits::path::{Harmonic, Path};
 use crate::gaits::path_leg::PathLeg;
@@ -15,6 +15,7 @@ use crate::gaits::waveform::Waveform;
 use crate::measures::Measures;
 use crate::measures::servo::LEG_NAMES;
 
+/// The keys of a gait's table.
 const GAIT_KEYS: [&str; 12] = [
     "period",
     "waveform",
@@ -29,7 +30,9 @@ const GAIT_KEYS: [&str; 12] = [
     "head",
     "tail",
 ];
+/// The values of the key `waveform`.
 const WAVEFORM_NAMES: [&str; 3] = ["still", "wave", "held"];
+/// The keys that name another gait, from which the gait is derived.
 const REFERENCE_KEYS: [&str; 3] = ["reverse", "mirror", "like"];
 
 /// Reads the gaits in the order of the file and resolves their references.
@@ -37,20 +40,20 @@ pub(crate) fn read_gaits(root: &Section, measures: &Measures) -> Checked<Vec<Gai
     let section = root.open("gait")?;
     let names = section.key_names();
     for name in &names {
-        check_name(name, "gait").map_err(|problem| section.fault(name, problem))?;
+        check_name(name, "gait").map_err(|problem| section.error(name, problem))?;
     }
     if names.len() > MAX_GAITS {
         let count = names.len();
         let message = format!(
             "holds {count} gaits; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
         );
-        return Err(Fault::new("gait", message));
+        return Err(UnlocatedError::new("gait", message));
     }
     check_boot_keys(&section, &names)?;
     if names.first() != Some(&"stand") {
         let message =
             "the first gait must be stand, the neutral pose that the robot takes at power-on";
-        return Err(Fault::clause("gait", message));
+        return Err(UnlocatedError::clause("gait", message));
     }
     let mut resolver = Resolver {
         section,
@@ -70,11 +73,11 @@ pub(crate) fn read_gaits(root: &Section, measures: &Measures) -> Checked<Vec<Gai
         Ok(gaits)
     } else {
         let message = "must be the neutral pose that the robot takes at power-on: waveform = \"still\" and a period";
-        Err(Fault::new("gait.stand", message))
+        Err(UnlocatedError::new("gait.stand", message))
     }
 }
 
-/// Refuses two gaits or routines that the EEPROM cannot tell apart: it stores the gait or routine of `boot` as a
+/// Refuses two gaits or routines that the EEPROM cannot distinguish: it stores the gait or routine of `boot` as a
 /// number computed from the name.
 pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> {
     let mut names_by_key = HashMap::new();
@@ -86,7 +89,7 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> 
             let message = format!(
                 "is not a gait name: the memory would take it for {other_name} when `boot` begins it, so one of them needs another name"
             );
-            return Err(section.fault(name, message));
+            return Err(section.error(name, message));
         }
     }
     Ok(())
@@ -120,7 +123,9 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
 
 /// A reader of gaits by name. It reads a gait only after the gait to which it refers.
 struct Resolver<'a> {
+    /// The table `gait`.
     section: Section<'a>,
+    /// The names of all gaits, in the order of the file.
     names: Vec<&'a str>,
     measures: &'a Measures,
     resolved_gaits: HashMap<&'a str, Gait>,
@@ -129,6 +134,7 @@ struct Resolver<'a> {
 }
 
 impl<'a> Resolver<'a> {
+    /// Reads the gait with this name, unless it has been read already.
     fn resolve(&mut self, name: &'a str) -> Checked<Gait> {
         if let Some(gait) = self.resolved_gaits.get(name) {
             return Ok(gait.clone());
@@ -153,20 +159,20 @@ impl<'a> Resolver<'a> {
         reference: &'static str,
     ) -> Checked<Gait> {
         allow_only(table, &[reference, "period", "gain"], reference)?;
-        let base = table.text(reference)?;
-        if !self.names.contains(&base) {
-            let hint = hint(base, &self.names);
-            let message = format!("names the gait \"{base}\", which does not exist; {hint}");
-            return Err(table.fault(reference, message));
+        let base_name = table.text(reference)?;
+        if !self.names.contains(&base_name) {
+            let hint = hint(base_name, &self.names);
+            let message = format!("names the gait \"{base_name}\", which does not exist; {hint}");
+            return Err(table.error(reference, message));
         }
-        if self.reference_chain.contains(&base) {
-            let circle = [self.reference_chain.as_slice(), &[base]]
+        if self.reference_chain.contains(&base_name) {
+            let circle = [self.reference_chain.as_slice(), &[base_name]]
                 .concat()
                 .join(" -> ");
             let message = format!("the gaits refer to each other in a circle: {circle}");
-            return Err(Fault::clause(table.full_key(reference), message));
+            return Err(UnlocatedError::clause(table.full_key(reference), message));
         }
-        let mut gait = self.resolve(base)?;
+        let mut gait = self.resolve(base_name)?;
         match reference {
             "reverse" => gait.is_reversed = !gait.is_reversed,
             "mirror" => gait = gait.mirrored(),
@@ -192,7 +198,7 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
         _ => {
             let message =
                 "needs exactly one of waveform, a path (head, tail), reverse, mirror, like";
-            Err(Fault::new(table.key.clone(), message))
+            Err(UnlocatedError::new(table.key.clone(), message))
         }
     }
 }
@@ -204,11 +210,12 @@ fn allow_only(table: &Section, allowed: &[&str], partner: &str) -> Checked<()> {
         .into_iter()
         .find(|name| !allowed.contains(name))
     {
-        Some(name) => Err(table.fault(name, format!("does not go with {partner}"))),
+        Some(name) => Err(table.error(name, format!("does not go with {partner}"))),
         None => Ok(()),
     }
 }
 
+/// Reads a gait that a waveform defines.
 fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> {
     let waveform_name = table.text("waveform")?;
     let partner = format!("waveform = \"{waveform_name}\"");
@@ -227,7 +234,7 @@ fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Ga
                 duty: table.number("duty", 0.05, 0.95, "of the cycle")?,
             };
             let amplitude = read_amplitude(table)?;
-            let starts = read_legs(
+            let starts = read_leg_values(
                 &table.section("start", &LEG_NAMES)?,
                 None,
                 0.0,
@@ -255,12 +262,13 @@ fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Ga
         }
         word => {
             let hint = hint(word, &WAVEFORM_NAMES);
-            return Err(table.fault("waveform", format!("is \"{word}\"; {hint}")));
+            return Err(table.error("waveform", format!("is \"{word}\"; {hint}")));
         }
     };
     build_gait(name, table, measures, strides)
 }
 
+/// Reads a gait that the paths of head and tail define.
 fn read_path(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> {
     allow_only(table, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
@@ -276,8 +284,8 @@ fn read_path(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> 
         };
         let legs = PathLeg::for_both_servos(measures.lizard, measures.neutral_angles(), end, &path)
             .map_err(|problem| {
-                let meaning = format!("in \"{name}\" the {end} would not reach its line");
-                Fault::clause(section.key.clone(), problem).with_meaning(meaning)
+                let consequence = format!("in \"{name}\" the {end} would not reach its line");
+                UnlocatedError::clause(section.key.clone(), problem).with_consequence(consequence)
             })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
@@ -290,7 +298,7 @@ fn read_path(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> 
     build_gait(name, table, measures, strides)
 }
 
-/// Makes a gait from its strides, with the period and the gains of its table.
+/// Builds a gait from its strides, with the period and the gains of its table.
 fn build_gait(
     name: &str,
     table: &Section,
@@ -318,11 +326,12 @@ fn read_amplitude(table: &Section) -> Checked<f64> {
     table.number("amplitude", 0.0, 90.0, "deg")
 }
 
+/// Reads the legs' gains, in servo order; 1 for a leg without a gain.
 fn read_gains(table: &Section) -> Checked<[f64; 4]> {
     if !table.has_key("gain") {
         return Ok([1.0; 4]);
     }
-    read_legs(
+    read_leg_values(
         &table.section("gain", &LEG_NAMES)?,
         Some(1.0),
         -4.0,
@@ -332,7 +341,7 @@ fn read_gains(table: &Section) -> Checked<[f64; 4]> {
 }
 
 /// Reads a number for each leg, in servo order. Without a default, each leg must have its number.
-fn read_legs(
+fn read_leg_values(
     section: &Section,
     default: Option<f64>,
     min: f64,
@@ -352,26 +361,27 @@ fn read_legs(
 /// Reads the order of the swings. Returns each leg's position in it, 0 to 3, in servo order.
 fn read_order(table: &Section) -> Checked<[usize; 4]> {
     let words = table.strings("order")?;
-    let order_fault = || table.fault("order", "must list each of LF, RF, RH, LH exactly once");
+    let order_error = || table.error("order", "must list each of LF, RF, RH, LH exactly once");
     if words.len() != LEG_NAMES.len() {
-        return Err(order_fault());
+        return Err(order_error());
     }
     let mut swing_indices = [0; 4];
     for (swing_index, leg) in swing_indices.iter_mut().zip(LEG_NAMES) {
         *swing_index = words
             .iter()
             .position(|word| *word == leg)
-            .ok_or_else(order_fault)?;
+            .ok_or_else(order_error)?;
     }
     Ok(swing_indices)
 }
 
+/// Reads the harmonics of one coordinate of a path.
 fn read_harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
     let terms = section.sections(name, &["k", "amplitude", "shift"])?;
     let read_term = |term: Section| {
         let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;
         if k.fract() != 0.0 {
-            return Err(term.fault("k", format!("is {k}; it must be a whole number")));
+            return Err(term.error("k", format!("is {k}; it must be a whole number")));
         }
         Ok(Harmonic {
             k,

@@ -32,7 +32,7 @@ impl Stride {
 /// A gait of robot.toml with its references resolved.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Gait {
-    /// Name of the gait; with its dashes replaced by blanks, it is also the console command.
+    /// Name of the gait; with spaces instead of hyphens, it is also the console command.
     pub name: String,
     /// Duration of one cycle at full speed, s.
     pub period: f64,
@@ -45,7 +45,7 @@ pub(crate) struct Gait {
 }
 
 impl Gait {
-    /// The phase, 0 to 1, a number of seconds after a start at phase 0, at full speed.
+    /// The phase (0 to 1) a given time after the gait started at phase 0, in seconds at full speed.
     pub fn phase_at(&self, seconds: f64) -> f64 {
         let cycles = seconds / self.period;
         (if self.is_reversed { -cycles } else { cycles }).rem_euclid(1.0)
@@ -62,12 +62,13 @@ impl Gait {
         std::array::from_fn(|i| self.neutral[i] + FORWARD_TURN_SIGN[i] * sweeps[i])
     }
 
-    /// Converts sweeps from neutral in the firmware's angle steps to servo angles: deg, chassis frame, servo order.
-    pub fn table_angles(&self, sweeps: [i16; 4]) -> [f64; 4] {
-        std::array::from_fn(|i| self.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
+    /// Converts the firmware's turns from neutral, in angle steps, counter-clockwise positive, to servo angles: deg,
+    /// chassis frame, servo order.
+    pub fn angles_from_table(&self, turns: [i16; 4]) -> [f64; 4] {
+        std::array::from_fn(|i| self.neutral[i] + f64::from(turns[i]) / STEPS_PER_DEGREE)
     }
 
-    /// Returns the gait with left and right exchanged.
+    /// Returns the gait with the strides of the left and right legs exchanged; the neutral angles stay.
     pub fn mirrored(mut self) -> Self {
         self.strides = OPPOSITE_SERVO.map(|i| self.strides[i].clone());
         self

@@ -21,7 +21,7 @@ pub use routine::Routine;
 pub use waveform::Waveform;
 pub(crate) use waveform::canonicalize;
 
-/// Returns the console command that starts the gait or routine of this name: dashes become blanks.
+/// Returns the console command that starts the gait or routine of this name: hyphens become spaces.
 pub fn command_of(name: &str) -> String {
     name.replace('-', " ")
 }

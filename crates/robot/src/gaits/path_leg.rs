@@ -10,6 +10,7 @@ use crate::measures::servo::FORWARD_TURN_SIGN;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathLeg {
     lizard: Lizard,
+    /// The end whose point follows the path.
     end: End,
     path: Path,
     /// Index of the servo, 0 to 3.
@@ -22,8 +23,8 @@ pub struct PathLeg {
 const CHECKED_POINTS_PER_CYCLE: usize = 4096;
 
 impl PathLeg {
-    /// Makes the motions of the two servos of the head or the tail, each with its servo's index.
-    /// `neutral` has the neutral angles of all four servos, deg.
+    /// Computes the motions of the two servos of the head or the tail, each with its servo's index.
+    /// `neutral` contains the neutral angles of all four servos, deg.
     ///
     /// # Errors
     /// Returns the message for a point of the path that is out of reach.

@@ -4,7 +4,7 @@
 use lizard_core::console::command::MAX_CYCLES;
 use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
 
-use crate::file::{Checked, Fault, Section, hint};
+use crate::file::{Checked, Section, UnlocatedError, hint};
 use crate::gaits::command_of;
 use crate::gaits::define::{check_boot_keys, check_name};
 use crate::measures::{INPUT_NAMES, Inputs};
@@ -23,10 +23,11 @@ const FOR_EVER: &str = "for ever";
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Routine {
     name: String,
+    /// See [`Routine::step_records`].
     step_records: Vec<Step>,
     /// The number of rounds; 0 if the routine repeats for ever.
     rounds: u16,
-    /// The index of the step record at which each round except the first begins.
+    /// The index of the step record at which each round except the first starts.
     repeat_record_index: u16,
 }
 
@@ -92,9 +93,9 @@ pub(crate) fn read_routines(
     let section = root.open("routine")?;
     let names = section.key_names();
     for name in &names {
-        check_name(name, "routine").map_err(|problem| section.fault(name, problem))?;
+        check_name(name, "routine").map_err(|problem| section.error(name, problem))?;
         if gaits.contains(name) {
-            return Err(section.fault(name, "has the name of a gait; give it another one"));
+            return Err(section.error(name, "has the name of a gait; give it another one"));
         }
     }
     let all_names: Vec<&str> = gaits.iter().chain(&names).copied().collect();
@@ -104,12 +105,13 @@ pub(crate) fn read_routines(
         let message = format!(
             "and gait are {count} together; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
         );
-        return Err(Fault::new("routine", message));
+        return Err(UnlocatedError::new("routine", message));
     }
     let read_named_routine = |name: &&str| read_routine(&section, name, gaits, &names, inputs);
     names.iter().map(read_named_routine).collect()
 }
 
+/// Reads the routine with this name.
 fn read_routine(
     section: &Section,
     name: &str,
@@ -118,26 +120,26 @@ fn read_routine(
     inputs: &Inputs,
 ) -> Checked<Routine> {
     let table = section.section(name, &["steps", "repeat", "repeat_from"])?;
-    let texts = table.strings("steps")?;
-    if texts.is_empty() || texts.len() > MAX_STEPS {
-        let count = texts.len();
+    let step_texts = table.strings("steps")?;
+    if step_texts.is_empty() || step_texts.len() > MAX_STEPS {
+        let count = step_texts.len();
         let message = format!("has {count} steps; it must have 1 to {MAX_STEPS}");
-        return Err(table.fault("steps", message));
+        return Err(table.error("steps", message));
     }
-    let parse_text = |(index, text): (usize, &&str)| {
-        let fault_of = |problem| {
+    let parse_step_text = |(index, text): (usize, &&str)| {
+        let error_of = |problem| {
             let message = format!("step {}, \"{text}\", {problem}", index + 1);
-            Fault::clause(table.full_key("steps"), message)
+            UnlocatedError::clause(table.full_key("steps"), message)
         };
-        parse_records(text, name, gaits, routines, inputs).map_err(fault_of)
+        parse_records(text, name, gaits, routines, inputs).map_err(error_of)
     };
-    let steps = texts.iter().enumerate().map(parse_text);
+    let steps = step_texts.iter().enumerate().map(parse_step_text);
     let steps = steps.collect::<Checked<Vec<_>>>()?;
     let unit = "(a step)";
     let first_repeated_step = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
     if first_repeated_step.fract() != 0.0 {
         let message = format!("is {first_repeated_step}; it must be the number of a step");
-        return Err(table.fault("repeat_from", message));
+        return Err(table.error("repeat_from", message));
     }
     Ok(Routine {
         name: name.to_string(),
@@ -147,6 +149,7 @@ fn read_routine(
     })
 }
 
+/// Reads the number of rounds; 0 if the routine repeats for ever.
 fn read_rounds(table: &Section) -> Checked<u16> {
     if table.text("repeat").is_ok_and(|text| text == FOR_EVER) {
         return Ok(0);
@@ -156,7 +159,7 @@ fn read_rounds(table: &Section) -> Checked<u16> {
     let rounds = table.number_or("repeat", 1.0, 1.0, max, &unit)?;
     if rounds.fract() != 0.0 {
         let message = format!("is {rounds}; it must be a whole number {unit}");
-        return Err(table.fault("repeat", message));
+        return Err(table.error("repeat", message));
     }
     Ok(rounds as u16)
 }
@@ -199,7 +202,7 @@ fn parse_records(
     }
 }
 
-/// The message about a step with an input that robot.toml does not have.
+/// Makes the message about a step with an input that robot.toml does not have.
 fn missing_input_message(name: &str) -> String {
     if INPUT_NAMES.contains(&name) {
         return format!(
@@ -262,6 +265,7 @@ fn parse_step(
     }
 }
 
+/// Converts a time in seconds, as written in a step, to frames.
 fn parse_frames(time: &str) -> Result<u16, String> {
     let seconds: f64 = time.parse().unwrap_or(f64::NAN);
     let min = 1.0 / FRAMES_PER_SECOND;

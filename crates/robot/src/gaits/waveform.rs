@@ -15,7 +15,7 @@ pub enum Waveform {
     /// A leg that does not move.
     Still,
     /// A linear stance over `duty` of the cycle, then a cubic Hermite swing that
-    /// has the stance's speed where the two join. The swing's peak is 1.
+    /// has the stance's speed at both ends. The swing's peak is 1.
     Wave {
         /// The duty factor: the stance's share of the cycle, 0 to 1.
         duty: f64,
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn every_waveform_reaches_1_and_minus_1_and_is_continuous_over_the_wrap() {
+    fn every_waveform_reaches_1_and_minus_1_and_is_continuous_where_the_cycle_repeats() {
         for waveform in all_waveforms() {
             let samples: Vec<f64> = (0..=10_000)
                 .map(|i| waveform.value_at(i as f64 / 1e4))
@@ -151,13 +151,13 @@ mod tests {
     }
 
     #[test]
-    fn a_wave_begins_its_stance_just_short_of_its_peak() {
+    fn a_wave_starts_its_stance_just_below_its_peak() {
         // For duty factor 3/4, a numerical search finds the turning point at t = 0.0435645, with the value -1.0143010.
         assert!((Waveform::Wave { duty: 0.75 }.value_at(0.0) - 1.0 / 1.014_301_03).abs() < 1e-7);
     }
 
     #[test]
-    fn a_held_leg_returns_in_its_own_fifth_alone() {
+    fn a_held_leg_swings_only_in_its_own_fifth_of_the_cycle() {
         for swing_index in 0..4 {
             let waveform = Waveform::Held { swing_index };
             let start = 0.2 * (swing_index + 1) as f64;
@@ -174,7 +174,7 @@ mod tests {
                 };
                 assert!(
                     (waveform.value_at(u) - expected).abs() < 1e-12,
-                    "turn {swing_index}, phase {u}"
+                    "swing {swing_index}, phase {u}"
                 );
             }
             assert!(

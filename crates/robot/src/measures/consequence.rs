@@ -31,7 +31,7 @@ pub(crate) fn consequence(check: Check) -> String {
 }
 
 /// Returns the consequence for the robot of a pose in which the loop of a part of the linkage does not close.
-pub(crate) fn open_loop_consequence(part: Part) -> String {
+pub(crate) fn unclosed_loop_consequence(part: Part) -> String {
     match part {
         Part::End(end) => format!("the links of the {end} would not reach each other"),
         Part::Side(side) => format!("the {side} slider would have no length"),

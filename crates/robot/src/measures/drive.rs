@@ -33,17 +33,17 @@ pub(crate) fn read(
     };
     if kind_name == "spring" {
         let message = "is \"spring\", which no part is; write \"strut\" with the force and rate of its spring, or \"rigid\"";
-        return Err(section.fault("kind", message));
+        return Err(section.error("kind", message));
     }
     let section = section.require_known_keys(&KEYS)?;
     let Some((_, own_keys)) = KINDS.into_iter().find(|(name, _)| *name == kind_name) else {
         let hint = hint(kind_name, &KINDS.map(|(name, _)| name));
-        return Err(section.fault("kind", format!("is \"{kind_name}\"; {hint}")));
+        return Err(section.error("kind", format!("is \"{kind_name}\"; {hint}")));
     };
     let mut all_keys = KINDS.into_iter().flat_map(|(_, keys)| keys);
     if let Some(foreign_key) = all_keys.find(|key| !own_keys.contains(key) && section.has_key(key))
     {
-        return Err(section.fault(
+        return Err(section.error(
             foreign_key,
             format!("does not go with kind = \"{kind_name}\""),
         ));

@@ -48,7 +48,7 @@ fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
             let message = format!(
                 "is so far from the middle that foot {foot} is in the air at neutral; all four must carry"
             );
-            Err(section.fault("centre", message))
+            Err(section.error("centre", message))
         }
         None => Ok(body),
     }

@@ -8,7 +8,7 @@
 use lizard_contact::Feet;
 use lizard_kinematics::{End, Lizard, Vector};
 
-use crate::file::{Checked, Fault, Section};
+use crate::file::{Checked, Section, UnlocatedError};
 use crate::measures::legs::chassis_offset;
 use crate::measures::parts::Parts;
 
@@ -75,7 +75,7 @@ impl Hips {
                     "is left out and follows from links, parts.pivot and parts.foot, which put it at {computed_mm:.2} mm; it must be within {min} to {max} mm"
                 ),
             };
-            Err(Fault::new(format!("leg.{key}"), problem))
+            Err(UnlocatedError::new(format!("leg.{key}"), problem))
         };
         let hip_side_of =
             |hip: Vector| resolve_distance(self.side, hip.x, SIDE_KEY, HIP_SIDE_RANGE);

@@ -43,7 +43,7 @@ impl Inputs {
             let pin = read_pin(&table)?;
             if let Some((_, owner)) = used_pins.iter().find(|(other, _)| *other == pin) {
                 let message = format!("is \"{}\", which {owner} already has", table.text("pin")?);
-                return Err(table.fault("pin", message));
+                return Err(table.error("pin", message));
             }
             used_pins.push((pin, format!("input.{name}")));
             Ok(Some(pin))

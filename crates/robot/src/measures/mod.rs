@@ -24,7 +24,7 @@ mod supply;
 mod tests;
 
 pub use coil::Coil;
-pub(crate) use consequence::{consequence, open_loop_consequence};
+pub(crate) use consequence::{consequence, unclosed_loop_consequence};
 pub use input::{INPUT_NAMES, Inputs};
 pub use legs::{LegPlace, LegPlan};
 pub use motor::ServoType;
@@ -38,7 +38,7 @@ use lizard_contact::{Ground, Joints};
 use lizard_core::numbers::bars::MIN_COUPLER_STEPS;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
-use crate::file::{Checked, Fault, Section};
+use crate::file::{Checked, Section, UnlocatedError};
 use hips::Hips;
 use scale::LONGEST_BAR;
 
@@ -134,7 +134,7 @@ impl Measures {
                     let message = format!(
                         "is {value} mm, which is short beside the rest of its loop; the firmware's 16-bit integers ask for at least {min_mm:.1} mm, or for shorter cranks and a shorter base"
                     );
-                    return Err(Fault::new(key, message));
+                    return Err(UnlocatedError::new(key, message));
                 }
             }
         }
@@ -147,7 +147,7 @@ impl Measures {
             let (min, max) = (-min_nominal_length, LONGEST_BAR);
             if !(min..=max).contains(&value) {
                 let unit = "mm, so that the slider keeps a length";
-                return Err(Fault::out_of_range(
+                return Err(UnlocatedError::out_of_range(
                     key.to_string(),
                     value,
                     (min, max),
@@ -162,11 +162,11 @@ impl Measures {
     fn check_neutral(&self) -> Checked<()> {
         let refuse = |consequence: String, problem: String| {
             let meaning = format!("in the neutral pose {consequence}");
-            Err(Fault::clause("servo", problem).with_meaning(meaning))
+            Err(UnlocatedError::clause("servo", problem).with_consequence(meaning))
         };
         match self.lizard.solve(&self.neutral_angles().into()) {
             Err(infeasible) => refuse(
-                open_loop_consequence(infeasible.part),
+                unclosed_loop_consequence(infeasible.part),
                 infeasible.to_string(),
             ),
             Ok(solution) => match self.limits.violations(&solution).next() {
@@ -208,7 +208,7 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
         "drive",
     ];
     let section = root.open("leg")?;
-    section.refuse_moved_keys(&["spring", "preload"], SPRING_REPLACEMENT)?;
+    section.refuse_former_keys(&["spring", "preload"], SPRING_REPLACEMENT)?;
     let section = section.require_known_keys(&keys)?;
     let read_bar = |name| section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm");
     let leg = Leg {
@@ -249,5 +249,5 @@ fn require_equal(
         return Ok(());
     }
     let message = format!("is {value}, but {other_key} is {other_value}; {reason}");
-    Err(Fault::new(key, message))
+    Err(UnlocatedError::new(key, message))
 }

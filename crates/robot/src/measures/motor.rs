@@ -137,7 +137,7 @@ fn read_model(section: &Section) -> Checked<ServoType> {
         let message = format!(
             "is \"{model_name}\"; for a servo without a name here write stall_kg_cm and s_per_60_deg of its data sheet instead; {hint}"
         );
-        section.fault("model", message)
+        section.error("model", message)
     })
 }
 

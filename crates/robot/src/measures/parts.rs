@@ -236,7 +236,7 @@ impl Parts {
             return Ok(defaults);
         }
         let section = root.open("parts")?;
-        section.refuse_moved_keys(&["strut"], STRUT_REPLACEMENT)?;
+        section.refuse_former_keys(&["strut"], STRUT_REPLACEMENT)?;
         let section = section.require_known_keys(&KEYS)?;
         let read_mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
         let read_pair = |name, default: [f64; 2], min, max| match section.has_key(name) {

@@ -110,7 +110,7 @@ pub(crate) fn read_pin(section: &Section) -> Checked<u8> {
         let message = format!(
             "is \"{text}\"; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)"
         );
-        section.fault("pin", message)
+        section.error("pin", message)
     })
 }
 
@@ -149,7 +149,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
             .position(|earlier: &Servo| earlier.pin == servo.pin)
         {
             let (pin, owner) = (table.text("pin")?, SERVO_NAMES[owner]);
-            return Err(table.fault(
+            return Err(table.error(
                 "pin",
                 format!("is \"{pin}\", which servo.{owner} already has"),
             ));
@@ -168,7 +168,7 @@ fn read_servo(section: &Section) -> Checked<Servo> {
             "is {}; it must be within 1 to 22 us, or -22 to -1 where a longer pulse turns the horn clockwise",
             format_number(us_per_degree)
         );
-        return Err(section.fault("us_per_degree", message));
+        return Err(section.error("us_per_degree", message));
     }
     let servo = Servo {
         pin,

@@ -156,7 +156,7 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     }
     let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
     let text = section.text("pin")?;
-    let fault_of = |reason: String| section.fault("pin", format!("is \"{text}\"{reason}"));
+    let fault_of = |reason: String| section.error("pin", format!("is \"{text}\"{reason}"));
     let pin = parse_pin(text)
         .filter(|pin| ANALOGUE_PINS.contains(pin))
         .ok_or_else(|| fault_of("; it must be one of A0 to A5".to_string()))?;

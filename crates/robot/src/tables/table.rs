@@ -8,7 +8,7 @@ use lizard_avr::Flash;
 use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES_PER_WAVE, Wave};
 use lizard_core::numbers::units::CYCLE;
 
-use crate::file::{Checked, Fault};
+use crate::file::{Checked, UnlocatedError};
 use crate::gaits::{Gait, Stride, Waveform, canonicalize, command_of};
 use crate::measures::servo::{FORWARD_TURN_SIGN, SERVO_NAMES};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
@@ -47,7 +47,7 @@ impl Tables {
                         gait.name
                     );
                     let message = "its sweep is half a turn or more";
-                    return Err(Fault::clause(key, message).with_meaning(meaning));
+                    return Err(UnlocatedError::clause(key, message).with_consequence(meaning));
                 };
                 stored_strides.push(stored_stride);
             }
@@ -55,7 +55,7 @@ impl Tables {
                 let message = format!(
                     "needs one waveform more than the {MAX_WAVES} that the firmware can number with a byte; gaits that differ only in amplitude, start, gain, period or direction share one"
                 );
-                return Err(Fault::new(key, message));
+                return Err(UnlocatedError::new(key, message));
             }
         }
         let peak_amplitudes = bank.peak_amplitudes(&stored_strides);

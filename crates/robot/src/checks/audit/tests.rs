@@ -21,9 +21,10 @@ fn slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
     travels
 }
 
+/// A gait without movement, which every robot needs.
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
-/// The robot `unequal` with its sliders at nominal in the neutral pose. Its only moving gait, `lean`, moves the legs
+/// The robot `unequal` with its sliders at nominal length in the neutral pose. Its only moving gait, `lean`, moves the legs
 /// of one side, so that only that slider moves.
 fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
     let legs = if is_right {
@@ -75,7 +76,7 @@ fn a_slider_that_reaches_its_end_on_one_side_only_is_named() {
             ),
         ] {
             let message = leaning_robot(is_right, &[(from, to)])
-                .expect_err(word)
+                .expect_err("the stroke is too small for the gait")
                 .to_string();
             let expected_start = format!(
                 "in \"lean\" the {side} slider would run into its end: {side} slider travel "
@@ -135,7 +136,7 @@ fn every_sample_of_every_servo_is_checked() {
 }
 
 #[test]
-fn a_backward_swing_is_as_fast_as_a_forward_one() {
+fn a_backward_swing_has_the_same_peak_speed_as_a_forward_swing() {
     // All legs have a negative gain, so they swing backward.
     let table = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
     let robot = robot_with("unequal", &[("[gait.trot]", table)]).expect("the gait is valid");
@@ -229,14 +230,14 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
         let name = key.split(' ').next().expect("the text begins with a key");
         let least_margin_of = |gait: &CheckedGait| {
             let audit = gait.audit();
-            let [least] = [audit.type2, audit.type1, audit.leg]
+            let [least_margin] = [audit.type2, audit.type1, audit.leg]
                 .into_iter()
                 .filter(|margin| checks.contains(&margin.check))
                 .collect::<Vec<_>>()[..]
             else {
                 panic!("{audit:?}")
             };
-            least.value
+            least_margin.value
         };
         let least_margin = unequal
             .gaits()

@@ -9,11 +9,13 @@ fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}{gaits}", text_before_gaits("paper")))
 }
 
+/// The first gait of every robot.
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
+/// A gait with a waveform of its own.
 const WALK: &str = "[gait.walk]\nperiod = 1.0\nwaveform = \"wave\"\nduty = 0.75\namplitude = 10.0\nstart = { LH = 0.0, LF = 0.25, RH = 0.5, RF = 0.75 }\n";
 
 #[test]
-fn a_gait_reversed_twice_goes_forward() {
+fn a_gait_reversed_twice_runs_forward() {
     let robot = robot("own-gaits");
     let is_reversed = |name| robot.gait(name).expect(name).is_reversed();
     assert_eq!(
@@ -28,9 +30,13 @@ fn a_gait_reversed_twice_goes_forward() {
         .map(is_reversed),
         [false, true, false, false, true, true]
     );
-    let stroll_on = robot.gait("stroll-on").expect("stroll-on");
+    let stroll_on = robot
+        .gait("stroll-on")
+        .expect("the robot has the gait stroll-on");
     assert_eq!((stroll_on.phase_at(0.32), stroll_on.period()), (0.25, 1.28));
-    let stroll_back = robot.gait("stroll-back").expect("stroll-back");
+    let stroll_back = robot
+        .gait("stroll-back")
+        .expect("the robot has the gait stroll-back");
     assert_eq!(
         (stroll_back.phase_at(0.3), stroll_back.period()),
         (0.75, 1.2)
@@ -67,7 +73,7 @@ fn a_mirrored_gait_exchanges_left_and_right_before_its_gains_apply() {
 #[test]
 fn each_leg_swings_at_its_position_in_the_order() {
     let robot = robot("own-gaits");
-    let creep = robot.gait("creep").expect("creep");
+    let creep = robot.gait("creep").expect("the robot has the gait creep");
     // All legs move back in the first fifth; then RF, LH, LF and RH swing forward, each in one of the next fifths.
     for (leg, fifth) in [(1, 1), (3, 2), (0, 3), (2, 4)] {
         let sweep_at = |phase: f64| creep.sweeps(phase)[leg];
@@ -80,8 +86,8 @@ fn each_leg_swings_at_its_position_in_the_order() {
 fn a_path_moves_the_end_that_it_names_and_leaves_the_other_at_neutral() {
     let robot = robot("own-gaits");
     let neutral: [f64; 4] = robot.neutral_pose().into();
-    let wag = robot.gait("wag").expect("wag");
-    let nod = robot.gait("nod").expect("nod");
+    let wag = robot.gait("wag").expect("the robot has the gait wag");
+    let nod = robot.gait("nod").expect("the robot has the gait nod");
     for i in 0..64 {
         let phase = f64::from(i) / 64.0;
         let angle = std::f64::consts::TAU * phase;
@@ -210,7 +216,7 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
 
 #[test]
 fn more_waveforms_than_the_section_has_room_for_are_refused() {
-    // The walk takes one waveform, and each nod, along its own line, takes two.
+    // The walk needs one waveform; each nod follows its own line, so it needs two.
     let text_of_gaits = |count: usize| {
         let make_nod = |i: usize| {
             let x = 0.03 * (i as f64 + 1.0);
