@@ -10,7 +10,7 @@ use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::layers::stack::Span;
 
-/// A layer of a body: a union of shapes less some holes, between two heights. Its walls are upright, or lean outward
+/// A layer of a body: a union of shapes less some holes, between two heights. Its walls are vertical, or lean outward
 /// by the difference of its insets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
@@ -70,7 +70,7 @@ impl Prism {
         }
     }
 
-    /// The layer with upright walls and the cross-section at a share of its height: 0 at the bottom, 1 at the top.
+    /// The layer with vertical walls and the cross-section at a share of its height: 0 at the bottom, 1 at the top.
     pub(crate) fn cross_section(&self, share: f64) -> Cow<'_, Self> {
         if self.inset == [0.0; 2] {
             return Cow::Borrowed(self);
@@ -96,7 +96,8 @@ pub enum Kind {
     Horn,
     /// A screw that forms a joint or holds parts together, by its length below the head, mm.
     Screw(f64),
-    /// A screw with a hexagonal head, held from turning by the part's hexagonal recess.
+    /// A screw with a hexagonal head, by its length below the head, mm; a pocket in the part keeps the head from
+    /// turning.
     HexScrew(f64),
     /// A self-tapping screw that comes with a servo.
     ServoScrew,
@@ -112,7 +113,7 @@ pub enum Kind {
     Standoff(f64),
     /// A tension spring.
     Spring,
-    /// A pad under a foot, to print of a rubbery filament.
+    /// A pad under a foot, printed from a flexible filament.
     Pad,
     /// The Arduino UNO.
     Board,
@@ -238,6 +239,6 @@ pub(crate) fn end_and_index(servo: usize) -> (End, usize) {
 /// Length of the coupler on a servo's crank, mm.
 pub(crate) fn coupler_length(robot: &Robot, servo: usize) -> f64 {
     let (end, index) = end_and_index(servo);
-    let bars = robot.lizard().end(end);
-    [bars.left_coupler_length, bars.right_coupler_length][index]
+    let five_bar = robot.lizard().end(end);
+    [five_bar.left_coupler_length, five_bar.right_coupler_length][index]
 }

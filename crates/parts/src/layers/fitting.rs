@@ -63,7 +63,7 @@ impl fmt::Display for Example {
 /// A part that is bought and mounted on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fitting {
-    /// A converter that makes 5 V for the servos from the battery's voltage.
+    /// A converter from the battery's voltage to 5 V for the servos.
     Converter,
     /// A capacitor that supports the servos' supply while they start.
     Capacitor,
@@ -104,9 +104,9 @@ pub struct FittingFacts {
     pub size: [f64; 3],
     /// The article to buy, without rating and size.
     pub article: &'static str,
-    /// The position on the robot.
+    /// The fitting's position on the robot.
     pub place: &'static str,
-    /// The means by which it is fastened there.
+    /// The means by which the fitting is fastened there.
     pub fastening: &'static str,
     /// Two products that fit into the space.
     pub examples: [Example; 2],

@@ -1,8 +1,8 @@
 //! Engraved marks for parts that differ only as left and right do.
 //!
-//! A link for A1 and its mirror image for A2 look alike in the hand. So if a part comes
-//! in several kinds, each kind has the numbers of its servos engraved: 13 is for A1 and
-//! A3. Digits are made of straight lines, as on a pocket calculator.
+//! A link for A1 and its mirror image for A2 look alike in the hand. So if a part comes in several kinds, each kind has
+//! the numbers of its servos engraved: 13 is for A1 and A3. Digits are made of straight strokes, as on a pocket
+//! calculator.
 
 use lizard_kinematics::Vector;
 
@@ -10,13 +10,13 @@ use crate::layers::body::Prism;
 use crate::layers::outline::{Loop, Outline, bounds};
 use crate::layers::shape::Shape;
 
-/// Width and height of a digit between the middles of its lines, mm.
+/// Width and height of a digit between the middles of its strokes, mm.
 const DIGIT_SIZE: [f64; 2] = [1.9, 3.4];
 /// Distance from one digit to the next, mm.
 const DIGIT_PITCH: f64 = 3.5;
-/// Half the width of a line, mm.
-const LINE_HALF_WIDTH: f64 = 0.35;
-/// Depth of a line: two printed layers, mm.
+/// Half the width of a stroke, mm.
+const STROKE_HALF_WIDTH: f64 = 0.35;
+/// Depth of a stroke, mm: two printed layers.
 pub const MARK_DEPTH: f64 = 0.4;
 /// Least width of the face around a mark, mm.
 const MIN_BORDER: f64 = 0.7;
@@ -24,8 +24,8 @@ const MIN_BORDER: f64 = 0.7;
 /// this.
 const POSITION_STEP: f64 = 0.8;
 
-/// The lines of a digit, each by its two end points, in a unit square.
-fn digit_lines(digit: char) -> &'static [[(f64, f64); 2]] {
+/// The strokes of a digit, each by its two end points, in a unit square.
+fn digit_strokes(digit: char) -> &'static [[(f64, f64); 2]] {
     const TOP: [(f64, f64); 2] = [(0.0, 1.0), (1.0, 1.0)];
     const MIDDLE: [(f64, f64); 2] = [(0.0, 0.5), (1.0, 0.5)];
     const BOTTOM: [(f64, f64); 2] = [(0.0, 0.0), (1.0, 0.0)];
@@ -42,16 +42,16 @@ fn digit_lines(digit: char) -> &'static [[(f64, f64); 2]] {
     }
 }
 
-/// The lines of a mark whose lower left corner is at a position.
+/// The strokes of a mark whose lower left corner is at a position.
 pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
     let [width, height] = DIGIT_SIZE;
     let mut strokes = Vec::new();
     for (index, digit) in text.chars().enumerate() {
-        let left = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
-        let point_of = |(x, y): (f64, f64)| left + Vector::new(x * width, y * height);
-        let bars = digit_lines(digit).iter();
+        let corner = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
+        let point_of = |(x, y): (f64, f64)| corner + Vector::new(x * width, y * height);
+        let bars = digit_strokes(digit).iter();
         strokes.extend(
-            bars.map(|[from, to]| Shape::bar(point_of(*from), point_of(*to), LINE_HALF_WIDTH)),
+            bars.map(|[from, to]| Shape::bar(point_of(*from), point_of(*to), STROKE_HALF_WIDTH)),
         );
     }
     strokes
@@ -100,7 +100,7 @@ fn find_position(
     let ends = outline.loops().flat_map(Loop::sides_with_end_points);
     let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.midpoint(to)]));
     let [width, height] = mark_size(text);
-    let margin = LINE_HALF_WIDTH + MIN_BORDER;
+    let margin = STROKE_HALF_WIDTH + MIN_BORDER;
     let positions_between = |from: f64, to: f64, step: f64| {
         let count = ((to - from) / step).ceil().max(0.0) as u32;
         (0..=count).map(move |i| (from + f64::from(i) * step).min(to))

@@ -106,14 +106,17 @@ impl Outline {
 
     /// The area times its centroid: the first moment of area, mm^3.
     pub fn first_moment(&self) -> Vector {
-        self.loops()
-            .fold(Vector::default(), |sum, line| sum + line.first_moment())
+        self.loops().fold(Vector::default(), |sum, outline_loop| {
+            sum + outline_loop.first_moment()
+        })
     }
 
     /// True if a point is in the material.
     pub fn contains(&self, point: Vector) -> bool {
-        let turns: i32 = self.loops().map(|line| line.winding_number(point)).sum();
-        turns > 0
+        let winding_numbers = self
+            .loops()
+            .map(|outline_loop| outline_loop.winding_number(point));
+        winding_numbers.sum::<i32>() > 0
     }
 }
 
@@ -142,7 +145,7 @@ impl Loop {
         (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))
     }
 
-    /// Centre and radius if the loop is a circle.
+    /// The centre and the radius if the loop is a circle.
     pub fn circle(&self) -> Option<(Vector, f64)> {
         let mut arcs = self.sides_with_end_points().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
@@ -242,11 +245,12 @@ impl Segment {
     }
 }
 
-type Lines = Vec<Polyline<f64>>;
+/// Closed polylines.
+type Polylines = Vec<Polyline<f64>>;
 
 /// The union of outlines: its outer lines, and the gaps that these enclose.
-fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Lines, Lines) {
-    let (mut pieces, mut gaps) = (Lines::new(), Lines::new());
+fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Polylines, Polylines) {
+    let (mut pieces, mut gaps) = (Polylines::new(), Polylines::new());
     for outline in outlines {
         let mut union_line = outline.clone();
         let mut separate_pieces = Vec::new();
@@ -294,18 +298,18 @@ fn polyline_of(shape: &Shape) -> Polyline<f64> {
             line.add(corner.x, corner.y, 0.0);
             continue;
         }
-        let [begin, end] =
+        let [arc_start, arc_end] =
             [incoming, outgoing].map(|direction| corner + direction.rotated_right() * *radius);
         // Tangent of a quarter of the turn: the half-angle formula, applied twice.
         let (sin, cos) = (incoming.cross(outgoing), incoming.dot(outgoing));
         let bulge = if n == 2 {
             1.0
         } else {
-            let half = sin / (1.0 + cos);
-            half / (1.0 + (1.0 + half * half).sqrt())
+            let half_tangent = sin / (1.0 + cos);
+            half_tangent / (1.0 + (1.0 + half_tangent * half_tangent).sqrt())
         };
-        line.add(begin.x, begin.y, bulge);
-        line.add(end.x, end.y, 0.0);
+        line.add(arc_start.x, arc_start.y, bulge);
+        line.add(arc_end.x, arc_end.y, 0.0);
     }
     line
 }
@@ -313,12 +317,12 @@ fn polyline_of(shape: &Shape) -> Polyline<f64> {
 /// The volume of a layer, mm^3.
 pub(crate) fn volume(prism: &Prism) -> f64 {
     let area_at = |share| Outline::of(&prism.cross_section(share)).area();
-    let mean = match prism.inset[0] == prism.inset[1] {
+    let mean_area = match prism.inset[0] == prism.inset[1] {
         true => area_at(0.0),
-        // Simpson's rule, exact for the area of a cone.
+        // Simpson's rule, which is exact for a cone.
         false => (area_at(0.0) + 4.0 * area_at(0.5) + area_at(1.0)) / 6.0,
     };
-    mean * (prism.z[1] - prism.z[0])
+    mean_area * (prism.z[1] - prism.z[0])
 }
 
 #[cfg(test)]

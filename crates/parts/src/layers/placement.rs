@@ -1,4 +1,4 @@
-//! The placement of a body: its origin and its rotation about an upright axis.
+//! The placement of a body: its origin and its rotation about a vertical axis.
 
 use lizard_kinematics::{Real, Vector};
 

@@ -39,7 +39,7 @@ pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
                 .collect();
             for layer in &mut layers {
                 if layer.z[0] > low - SAME_HEIGHT_MM && layer.z[1] < high + SAME_HEIGHT_MM {
-                    layer.cut_shapes.retain(|other| other != hole);
+                    layer.cut_shapes.retain(|cut| cut != hole);
                 }
             }
         }
@@ -73,8 +73,8 @@ pub fn unsupported_hole_centres(prisms: &[Prism]) -> Vec<Vector> {
     for pair in prisms.windows(2) {
         let outline_below = Outline::of(&pair[0]);
         let holes = pair[1].cut_shapes.iter();
-        let hanging_holes = holes.filter(|hole| begins_in_air(hole, &pair[1], &outline_below));
-        centres.extend(hanging_holes.map(Shape::middle));
+        let unsupported_holes = holes.filter(|hole| begins_in_air(hole, &pair[1], &outline_below));
+        centres.extend(unsupported_holes.map(Shape::middle));
     }
     centres
 }

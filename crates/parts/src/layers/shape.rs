@@ -1,4 +1,4 @@
-//! Flat convex shapes with round corners. All parts are made of them.
+//! Flat convex shapes with round corners, of which all parts are made.
 //!
 //! A bar is a line that has a width; a hub is a point that has one; a plate is a polygon whose corners are rounded.
 //! Each of them is the convex hull of a few points, grown by a radius. The distance between two such shapes is the
@@ -124,9 +124,8 @@ impl Shape {
         }
     }
 
-    /// The distance to another shape, mm: 0 if they touch; if they overlap, minus the
-    /// length of the shortest shift that parts them. If a point moves by some length, the
-    /// distance changes by no more than that length.
+    /// The distance to another shape, mm: 0 if they touch; if they overlap, minus the length of the shortest shift that
+    /// separates them. If a point moves by some length, the distance changes by no more than that length.
     pub fn distance(&self, other: &Self) -> f64 {
         let mut distance = f64::INFINITY;
         if self.contains(other.points[0]) || other.contains(self.points[0]) {
@@ -152,8 +151,8 @@ impl Shape {
         distance - self.radius - other.radius
     }
 
-    /// Depth of this shape within a hole, mm; below 0 if it sticks out. The result is a lower
-    /// bound for every displacement of its points by up to `max_displacement` along x and y.
+    /// Depth of this shape within a hole, mm; negative if the shape sticks out. The result is a lower bound for every
+    /// displacement of its points by up to `max_displacement` along x and y.
     pub fn depth_in(&self, hole: &Self, max_displacement: Vector) -> f64 {
         let sharp_hole = Self {
             points: hole.points.clone(),
@@ -272,8 +271,8 @@ mod tests {
         assert_eq!(crossing_bar.distance(&plate), -5.0);
         let side_plate = Shape::rectangle(vector(9.0, 1.0), vector(10.0, 8.0), 0.0);
         assert_eq!(plate.distance(&side_plate), -1.0);
-        let upright_bar = Shape::bar(vector(3.0, -9.0), vector(3.0, 2.0), 1.0);
-        assert_eq!(crossing_bar.distance(&upright_bar), -4.0);
+        let vertical_bar = Shape::bar(vector(3.0, -9.0), vector(3.0, 2.0), 1.0);
+        assert_eq!(crossing_bar.distance(&vertical_bar), -4.0);
         let disc_of = |radius: f64| Shape::disc(vector(1.0, 0.0), radius);
         assert_eq!(disc_of(2.0).distance(&disc_of(3.0)), -5.0);
         assert_eq!(plate.distance(&Shape::disc(vector(8.0, 0.0), 1.0)), 2.0);

@@ -1,10 +1,9 @@
 //! The heights of the parts, in one table that all other modules use.
 //!
-//! z is up, 0 the top of the chassis plate. All parts are flat and all joints are
-//! upright, so a mechanism without collisions is a table in which parts that overlap as
-//! seen from above have different heights. From below: the floor, the foot's leaf, the
-//! plate with the couplers of the legs beside it, the legs' cranks, the struts, the
-//! servos' links, the couplers of head and tail with the sliders, the deck.
+//! z is up, 0 the top of the chassis plate. All parts are flat and all joint axes are vertical, so a mechanism without
+//! collisions is a table in which parts that overlap as seen from above have different heights. From below: the floor,
+//! the foot's leaf, the plate with the couplers of the legs beside it, the legs' cranks, the struts, the servos' links,
+//! the couplers of head and tail with the sliders, the deck.
 
 use lizard_robot::Parts;
 
@@ -187,8 +186,8 @@ impl Stack {
         }
     }
 
-    /// Top of the pocket for a leg anchor's nut, mm, and the length of the anchor's screw, mm.
-    /// The screw's tip must not touch the plate.
+    /// Height of the top of the pocket for a leg anchor's nut, and the length of the anchor's screw, mm. The screw's
+    /// tip must not touch the plate.
     pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
         let tip = self.crank[0] + ANCHOR_TIP_GAP;
         (tip + parts.screw.nut_height, self.anchor_head_face - tip)

@@ -40,7 +40,7 @@ impl Inertia {
         sum
     }
 
-    /// A point mass at the origin, g.
+    /// A point mass at the origin; `mass` in g.
     pub fn point_mass(mass: f64) -> Self {
         Self {
             mass,
@@ -48,7 +48,7 @@ impl Inertia {
         }
     }
 
-    /// The moments of the body after its density is multiplied by a factor.
+    /// The moments of the body with its density multiplied by a factor.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;
         self.first_moments = self.first_moments.map(|component| component * factor);
@@ -58,8 +58,8 @@ impl Inertia {
         self
     }
 
-    /// The moments of the body after it is moved by an offset, mm.
-    pub fn moved(mut self, offset: [f64; 3]) -> Self {
+    /// The moments of the body after a translation by an offset, mm.
+    pub fn translated(mut self, offset: [f64; 3]) -> Self {
         for i in 0..3 {
             for j in 0..3 {
                 self.second_moments[i][j] +=
@@ -154,21 +154,21 @@ mod tests {
     }
 
     #[test]
-    fn moved_moments_equal_those_of_the_body_at_the_new_place() {
+    fn translated_moments_equal_those_of_the_body_at_the_new_place() {
         let block_at = |x: f64, y: f64, z: f64| {
             let (middle, size) = (Vector::new(x, y), Vector::new(20.0, 10.0));
             inertia_of(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
         };
-        let (moved_block, expected_block) = (
-            block_at(7.0, -3.0, 2.0).moved([-9.0, 5.0, 1.0]),
+        let (translated_block, expected_block) = (
+            block_at(7.0, -3.0, 2.0).translated([-9.0, 5.0, 1.0]),
             block_at(-2.0, 2.0, 3.0),
         );
-        let pairs = moved_block
+        let pairs = translated_block
             .mass_centre()
             .into_iter()
             .zip(expected_block.mass_centre());
         let pairs = pairs.chain(
-            moved_block
+            translated_block
                 .tensor()
                 .into_iter()
                 .zip(expected_block.tensor()),

@@ -1,4 +1,4 @@
-//! Joints for URDF and SDF: names without blanks, ranges, friction.
+//! Joints for URDF and SDF: names without spaces, ranges, friction.
 
 use lizard_kinematics::Side;
 use lizard_robot::SLOT_LENGTH;
@@ -11,14 +11,14 @@ use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
 
 impl Node {
-    /// The node's name without blanks, as ROS requires.
+    /// The node's name without spaces, as ROS requires.
     pub(super) fn identifier(self) -> String {
         self.name().replace(' ', "_")
     }
 }
 
 impl LoopJoint {
-    /// The joint's name without blanks.
+    /// The joint's name without spaces.
     pub(super) fn identifier(&self) -> String {
         self.name.replace(' ', "_")
     }

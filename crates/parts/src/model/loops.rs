@@ -6,7 +6,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::Mount;
 use crate::model::node::Node;
 
-/// A cut joint that a constraint closes: a point that two bodies share.
+/// A cut joint: a point that two bodies share and at which a constraint closes the loop.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LoopJoint {
     /// The name, such as `end head`.

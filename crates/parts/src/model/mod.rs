@@ -44,7 +44,7 @@ use writer::Writer;
 /// Returns a scene as an MJCF file for MuJoCo.
 ///
 /// # Errors
-/// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not make a body.
+/// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not form a closed surface.
 pub fn mjcf(
     assembly: &Assembly,
     neutral: &Solution,
@@ -64,7 +64,7 @@ impl<'a> Pieces<'a> {
     /// Computes the shapes and masses for a scene.
     ///
     /// # Errors
-    /// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not make a body.
+    /// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not form a closed surface.
     pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildProblem> {
         let pieces = compute_pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_body_comes_once_and_after_its_parent() {
+    fn each_body_is_listed_once_and_after_its_parent() {
         for (has_slotted_struts, has_play) in
             [(false, false), (true, false), (false, true), (true, true)]
         {

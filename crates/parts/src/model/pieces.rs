@@ -42,7 +42,7 @@ pub(super) fn compute_pieces(
     let has_slotted_struts = scene.strut_spring.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
     let has_spring = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
-    // The scene may use the other kind of strut than the assembly does.
+    // The scene may have another kind of struts than the assembly.
     let swaps_struts = has_spring(assembly.bodies()) != has_slotted_struts;
     let all_bodies = assembly.bodies().iter();
     let kept_bodies = all_bodies.filter(|body| !(swaps_struts && is_strut(body)));
@@ -111,8 +111,8 @@ fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, 
                 (Node::OnMount(body.mount), other_prisms),
             ]
             .into_iter();
-            let filled_groups = groups.filter(|(_, prisms)| !prisms.is_empty());
-            filled_groups.collect()
+            let nonempty_groups = groups.filter(|(_, prisms)| !prisms.is_empty());
+            nonempty_groups.collect()
         }
         Mount::Link(servo) if body.kind == Kind::Horn && scene.play > 0.0 => {
             all_prisms_on(Node::Horn(servo))

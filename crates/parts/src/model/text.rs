@@ -17,7 +17,7 @@ pub(super) fn round(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
 }
 
-/// Joins numbers with blanks.
+/// Joins numbers with spaces.
 pub(super) fn join_numbers(numbers: impl IntoIterator<Item = impl ToString>) -> String {
     let numbers: Vec<_> = numbers
         .into_iter()

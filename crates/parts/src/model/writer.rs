@@ -15,7 +15,7 @@ use crate::layers::placement::Placement;
 /// Damping ratio of a foot on its leaf while it carries a quarter of the robot's mass.
 const LEAF_DAMPING_RATIO: f64 = 0.4;
 
-/// Writes a robot and its scene.
+/// A writer of a robot and its scene.
 pub(super) struct Writer<'a> {
     pub assembly: &'a Assembly,
     pub neutral: &'a Solution,
@@ -86,9 +86,9 @@ impl<'a> Writer<'a> {
         (1.0 - self.scene.limb_mass_factor) * limbs.map(|piece| piece.inertia.mass).sum::<f64>()
     }
 
-    /// The chassis, adjusted so that the whole robot has the mass and the mass centre of `[body]`. The mass of what
-    /// is not drawn, such as wires, is put at the plate's middle; then the chassis is shifted to correct the mass
-    /// centre.
+    /// The chassis, adjusted so that the whole robot has the mass and the mass centre of `[body]`. The mass of the
+    /// parts that are not drawn, such as wires, is put at the plate's middle; then the chassis is shifted to correct
+    /// the mass centre.
     fn corrected_chassis(&self, drawn_inertia: &Inertia) -> Inertia {
         let body = self.assembly.robot().ground().body;
         let bill = Bill::of(self.assembly, &[], self.neutral);
@@ -101,7 +101,7 @@ impl<'a> Writer<'a> {
         let chassis = drawn_inertia.plus(&Inertia::point_mass(undrawn_mass));
         let [moment_ahead, moment_left] =
             [0, 1].map(|i| body.mass * body.mass_centre[i] - bill.grams * bill.centre[i]);
-        chassis.moved([-moment_left, moment_ahead, 0.0].map(|moment| moment / chassis.mass))
+        chassis.translated([-moment_left, moment_ahead, 0.0].map(|moment| moment / chassis.mass))
     }
 
     /// Stiffness of a foot's leaf, N/m, and its damping, N s/m.

@@ -11,8 +11,8 @@
 //! its own stage, and turned when the nut comes. A pad moves with the screw in it; the key reaches that screw
 //! through the pad's hole.
 //!
-//! The servos are at neutral. If a screw cannot be reached at neutral, the nearest pose is searched that the guard
-//! accepts and that frees the screw, and the guide names that pose.
+//! The servos are at neutral. If a screw cannot be reached at neutral, a search finds the nearest pose that the guard
+//! accepts and at which the screw can be reached, and the guide names that pose.
 
 use std::fmt;
 
@@ -25,7 +25,7 @@ use crate::order::steps::{Step, TurningPlace};
 
 /// Radius of a screwdriver or hex key, and its length above the head, mm.
 pub const KEY_SIZE: [f64; 2] = [2.0, 30.0];
-/// Radius of the bare hex key for an M3 button head, 2 mm over its flats, in the hole of a pad, mm.
+/// Radius of the bare hex key for an M3 button head, 2 mm across flats, in the hole of a pad, mm.
 const HEX_KEY_RADIUS: f64 = 1.2;
 /// Wall thickness of a socket around a nut, and the socket's length beyond the nut, mm.
 pub const SOCKET_SIZE: [f64; 2] = [1.0, 10.0];
@@ -43,7 +43,7 @@ pub enum ScrewOperation {
     Push,
     /// Turning or holding the screw at its head.
     Turn,
-    /// Pushing in or turning its nut.
+    /// Pushing the screw's nut in, or turning it.
     FitNut,
 }
 
@@ -92,7 +92,7 @@ struct FreeSpace {
 
 /// The axis of a screw in the robot.
 struct ScrewAxis {
-    /// The point where the axis crosses the plane, mm.
+    /// The axis as seen from above, chassis frame, mm.
     position: Vector,
     /// Radius of the screw's head, mm.
     head_radius: f64,
@@ -115,7 +115,7 @@ impl ScrewAxis {
     }
 }
 
-/// The robot at a pose, in which screws are to be put in.
+/// The robot at the pose at which its screws are put in.
 struct PosedAssembly<'a> {
     assembly: &'a Assembly,
     pose: &'a Solution,
@@ -147,7 +147,7 @@ impl PosedAssembly<'_> {
         })
     }
 
-    /// True if a body extends into a space, outside the holes that enclose the space.
+    /// True if a body extends into a space that none of the body's holes encloses.
     fn extends_into(&self, body: &Body, space: &FreeSpace) -> bool {
         /// Overlap that still counts as touching, mm.
         const TOUCH_TOLERANCE: f64 = 1e-6;
@@ -155,14 +155,14 @@ impl PosedAssembly<'_> {
         let [low, high] = space.z;
         let is_beside = |z: [f64; 2]| z[0] > high - TOUCH_TOLERANCE || z[1] < low + TOUCH_TOLERANCE;
         let no_motion = Vector::default();
-        let meets =
+        let overlaps =
             |shape: &Shape| space.shape.distance(&shape.placed(&placement)) < -TOUCH_TOLERANCE;
         let encloses = |hole: &Shape| {
             space.shape.depth_in(&hole.placed(&placement), no_motion) > -TOUCH_TOLERANCE
         };
         let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
         prisms.any(|prism| {
-            prism.filled_shapes.iter().any(meets) && !prism.cut_shapes.iter().any(encloses)
+            prism.filled_shapes.iter().any(overlaps) && !prism.cut_shapes.iter().any(encloses)
         })
     }
 
@@ -218,7 +218,8 @@ impl PosedAssembly<'_> {
         let nut = nut.filter(|nut| nut.kind == Kind::Nut);
         let is_screw_or_its_nut =
             |name: &str| name == screw.name || nut.is_some_and(|nut| nut.name == name);
-        let is_in = |list: &[&Body], body: &Body| list.iter().any(|other| other.name == body.name);
+        let is_in =
+            |list: &[&Body], body: &Body| list.iter().any(|listed| listed.name == body.name);
         let new_nut = nut.filter(|nut| is_in(new_bodies, nut));
         let is_complete = is_in(surrounding_bodies, screw)
             && nut.is_none_or(|nut| is_in(surrounding_bodies, nut));
@@ -282,19 +283,19 @@ impl Assembly {
         let mut blocked_screws = Vec::new();
         let mut bodies_so_far: Vec<&Body> = Vec::new();
         for (step_number, step) in (1..).zip(steps) {
-            let first_of_step = bodies_so_far.len();
+            let step_start = bodies_so_far.len();
             for stage in &step.stages {
-                let is_already_on =
-                    |body: &Body| bodies_so_far.iter().any(|old| old.name == body.name);
-                let is_added = |body: &&Body| (stage.adds)(body) && !is_already_on(body);
-                let new_bodies: Vec<_> = self.bodies().iter().filter(is_added).collect();
+                let is_added =
+                    |body: &Body| bodies_so_far.iter().any(|added| added.name == body.name);
+                let is_new = |body: &&Body| (stage.adds)(body) && !is_added(body);
+                let new_bodies: Vec<_> = self.bodies().iter().filter(is_new).collect();
                 bodies_so_far.extend(&new_bodies);
                 for screw in self.bodies() {
                     let is_on_same_servos =
                         |body: &&&Body| body.mount.servos() == screw.mount.servos();
                     let surrounding_bodies: Vec<_> = match stage.turning_place {
                         TurningPlace::Robot => bodies_so_far.clone(),
-                        TurningPlace::Bench => bodies_so_far[first_of_step..]
+                        TurningPlace::Bench => bodies_so_far[step_start..]
                             .iter()
                             .filter(is_on_same_servos)
                             .copied()
@@ -339,24 +340,24 @@ impl Assembly {
             return Ok(access_poses);
         }
         for pose in self.poses_near(neutral) {
-            let still_blocked = self.blocked_screws(steps, &pose);
-            let is_now_reached = |obstacle: &mut BlockedScrew| {
-                let is_same_screw = |other: &BlockedScrew| {
-                    other.step == obstacle.step && other.screw == obstacle.screw
+            let blocked_at_pose = self.blocked_screws(steps, &pose);
+            let is_reached = |unreached: &mut BlockedScrew| {
+                let is_same_screw = |blocked: &BlockedScrew| {
+                    blocked.step == unreached.step && blocked.screw == unreached.screw
                 };
-                !still_blocked.iter().any(is_same_screw)
+                !blocked_at_pose.iter().any(is_same_screw)
             };
             let angles: [f64; 4] = pose.pose.into();
-            for blocked_screw in unreached_screws.extract_if(.., is_now_reached) {
+            for reached_screw in unreached_screws.extract_if(.., is_reached) {
                 let is_same_pose = |access_pose: &&mut AccessPose| {
-                    access_pose.step == blocked_screw.step && access_pose.pose == angles
+                    access_pose.step == reached_screw.step && access_pose.pose == angles
                 };
                 match access_poses.iter_mut().find(is_same_pose) {
-                    Some(access_pose) if access_pose.screws.contains(&blocked_screw.screw) => {}
-                    Some(access_pose) => access_pose.screws.push(blocked_screw.screw),
+                    Some(access_pose) if access_pose.screws.contains(&reached_screw.screw) => {}
+                    Some(access_pose) => access_pose.screws.push(reached_screw.screw),
                     None => access_poses.push(AccessPose {
-                        step: blocked_screw.step,
-                        screws: vec![blocked_screw.screw],
+                        step: reached_screw.step,
+                        screws: vec![reached_screw.screw],
                         pose: angles,
                     }),
                 }

@@ -1,7 +1,7 @@
 //! The steps of the assembly, from the plate to the first walk.
 //!
-//! A step is one picture of the guide. It has stages, done one after another: some of the work is done on the bench
-//! before it is mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
+//! A step is one picture of the guide. It has stages, done one after another: some parts are joined on the bench before
+//! they are mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
 //!
 //! A servo does not report its angle. So it is wired and driven to its middle before its link is pressed on, and
 //! its direction is tested before the links are joined: until then, a link that turns in the wrong direction moves
@@ -39,11 +39,11 @@ pub enum ExtraView {
     Below,
 }
 
-/// Bodies that are added together.
+/// A stage of a step: bodies that are added together.
 pub struct Stage {
     /// The place where the stage's screws are turned.
     pub turning_place: TurningPlace,
-    /// True for a body that the stage adds, unless an earlier stage has added it.
+    /// True for a body that the stage adds unless an earlier stage has added it.
     pub adds: fn(&Body) -> bool,
     /// True for a screw that an earlier stage added and that is turned again.
     pub turns_again: fn(&Body) -> bool,

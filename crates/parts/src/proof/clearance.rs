@@ -1,7 +1,7 @@
 //! The smallest distances between parts at given poses.
 //!
-//! Two parts can collide only at a height that they share. So pairs of layers are chosen once by height, and at
-//! each pose the plan views of their shapes are measured. Holes are ignored, so the true distance is never smaller
+//! Two parts can collide only at a height that they share. So pairs of layers are chosen once by height, and at each
+//! pose the distance of their shapes in plan view is measured. Holes are ignored, so the true distance is never smaller
 //! than the one found here.
 
 use std::collections::BTreeMap;
@@ -76,13 +76,13 @@ impl Assembly {
         for pose in poses {
             let placements = bodies.iter().map(|body| self.place(body.mount, &pose));
             let placements: Vec<_> = placements.collect();
-            for (body_indices, [(a, (middle, reach)), (b, (other_middle, other_reach))]) in &pairs {
+            for (body_indices, [(a, (a_middle, a_radius)), (b, (b_middle, b_radius))]) in &pairs {
                 let [first, second] = body_indices.map(|body| &placements[body]);
                 let disc_gap =
-                    (second.map(*other_middle) - first.map(*middle)).length() - reach - other_reach;
+                    (second.map(*b_middle) - first.map(*a_middle)).length() - a_radius - b_radius;
                 let least_so_far = least_by_pair
                     .get(body_indices)
-                    .map_or(limit_mm, |least_so_far| least_so_far.1);
+                    .map_or(limit_mm, |(_, mm)| *mm);
                 if disc_gap < least_so_far {
                     let mm = a.placed(first).distance(&b.placed(second));
                     if mm < least_so_far {
@@ -102,17 +102,17 @@ impl Assembly {
         clearances
     }
 
-    /// Poses that the guard accepts, on a grid of `steps` angles over each servo's travel.
+    /// Poses that the guard accepts, on a grid of `angles_per_servo` angles over each servo's travel.
     pub fn grid_poses(&self, angles_per_servo: u32) -> impl Iterator<Item = Solution> + '_ {
         let robot = self.robot();
-        let angle_at = move |servo: usize, step: u32| {
+        let angle_at = move |servo: usize, index: u32| {
             let servo = &robot.servos()[servo];
             let (low, high) = servo.travel();
-            servo.neutral + low + (high - low) * f64::from(step) / f64::from(angles_per_servo - 1)
+            servo.neutral + low + (high - low) * f64::from(index) / f64::from(angles_per_servo - 1)
         };
-        (0..angles_per_servo.pow(4)).filter_map(move |index| {
+        (0..angles_per_servo.pow(4)).filter_map(move |pose_index| {
             let digit_at =
-                |position: u32| index / angles_per_servo.pow(position) % angles_per_servo;
+                |position: u32| pose_index / angles_per_servo.pow(position) % angles_per_servo;
             robot.solve_if_allowed([0, 1, 2, 3].map(|i| angle_at(i as usize, digit_at(i))))
         })
     }

@@ -23,7 +23,7 @@ const LENGTH_RELAXATION_MM: f64 = 0.1;
 /// Resolution of the bounds of a servo's range in [`Guard::range_end`], deg.
 const RANGE_RESOLUTION_DEG: f64 = 0.01;
 /// Resolution of the angle of a pair's other servo in [`Guard::range_end`], deg.
-const OTHER_RESOLUTION_DEG: f64 = 0.2;
+const PARTNER_RESOLUTION_DEG: f64 = 0.2;
 /// Largest number of regions that [`Guard::find_pose`] searches.
 const MAX_SEARCHED_REGIONS: u32 = 300;
 
@@ -33,7 +33,7 @@ pub fn total_order_key(value: f64) -> i64 {
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
-/// A box of angles of `N` servos: their middles and half widths, deg.
+/// A box in the space of the angles of `N` servos, by its middle and its half widths, deg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<const N: usize> {
     pub middle: [f64; N],
@@ -44,32 +44,32 @@ impl<const N: usize> Region<N> {
     /// The region between bounds of each servo's angle, deg.
     pub fn of(bounds: [Interval; N]) -> Self {
         Self {
-            middle: bounds.map(|bounds_of_servo| {
-                bounds_of_servo.low + (bounds_of_servo.high - bounds_of_servo.low) / 2.0
-            }),
-            half_widths: bounds
-                .map(|bounds_of_servo| (bounds_of_servo.high - bounds_of_servo.low) / 2.0),
+            middle: bounds.map(|angle| angle.low + (angle.high - angle.low) / 2.0),
+            half_widths: bounds.map(|angle| (angle.high - angle.low) / 2.0),
         }
     }
 
     /// The region's two halves, split at the middle of one servo's angle.
     pub fn halves(&self, servo: usize) -> [Self; 2] {
         [-0.5, 0.5].map(|share| {
-            let mut part = *self;
-            part.middle[servo] += share * self.half_widths[servo];
-            part.half_widths[servo] *= 0.5;
-            part
+            let mut half = *self;
+            half.middle[servo] += share * self.half_widths[servo];
+            half.half_widths[servo] *= 0.5;
+            half
         })
     }
 
     /// The bounds of one servo's angle, slightly widened so that halves overlap.
     pub fn bounds(&self, servo: usize) -> Interval {
-        let half = self.half_widths[servo] + 1e-10;
-        Interval::new(self.middle[servo] - half, self.middle[servo] + half)
+        let half_width = self.half_widths[servo] + 1e-10;
+        Interval::new(
+            self.middle[servo] - half_width,
+            self.middle[servo] + half_width,
+        )
     }
 }
 
-/// Cranks at some angles. The cranks of other servos get a dummy direction.
+/// The cranks of some servos at these angles, deg. The cranks of other servos get a placeholder direction.
 fn cranks_at<'a, const N: usize, T: Real>(
     robot: &'a Robot,
     servos: &[usize; N],
@@ -139,23 +139,23 @@ impl<'a> Guard<'a> {
         let end_of = |region: &Region<2>| region.middle[index] - sign * region.half_widths[index];
         let whole_region = Region::of(pair.map(|servo| self.ranges[servo]));
         // The outermost region comes first; of regions that reach equally far, the one that was found first.
-        let (mut regions, mut insertion_number) = (BTreeMap::from([((0, 0), whole_region)]), 0);
+        let (mut regions, mut insertion_index) = (BTreeMap::from([((0, 0), whole_region)]), 0);
         while let Some((_, region)) = regions.pop_first() {
             if self.refuses(&pair, &region) {
                 continue;
             }
-            let mut resolution = [OTHER_RESOLUTION_DEG; 2];
+            let mut resolution = [PARTNER_RESOLUTION_DEG; 2];
             resolution[index] = RANGE_RESOLUTION_DEG;
             let [a, b] = [0, 1].map(|i| region.half_widths[i] / resolution[i]);
             if a.max(b) < 1.0 {
                 return end_of(&region);
             }
             for half_region in region.halves(usize::from(b > a)) {
-                insertion_number += 1;
+                insertion_index += 1;
                 regions.insert(
                     (
                         total_order_key(sign * end_of(&half_region)),
-                        insertion_number,
+                        insertion_index,
                     ),
                     half_region,
                 );
@@ -165,13 +165,13 @@ impl<'a> Guard<'a> {
         end_of(&whole_region)
     }
 
-    /// True if the conditions that depend only on these servos refuse every pose of a region.
+    /// True if the conditions that depend only on these servos exclude every pose of a region.
     pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
         self.cranks(servos, region).is_none()
     }
 
-    /// The cranks of some servos within a region and at its middle; `None` if the conditions that depend only on
-    /// these servos refuse every pose of the region.
+    /// The cranks of some servos within a region and at its middle; `None` if the conditions that depend only on these
+    /// servos exclude every pose of the region.
     pub fn cranks<const N: usize>(
         &self,
         servos: &[usize; N],
@@ -180,16 +180,17 @@ impl<'a> Guard<'a> {
         let angles = std::array::from_fn(|i| IntervalDual::angle(i, region.bounds(i)));
         let bounds = cranks_at(self.robot, servos, angles);
         let middle = cranks_at(self.robot, servos, region.middle);
-        let is_broken = |(check, bounds, middle): (Check, IntervalDual<N>, f64)| {
+        let is_violated = |(check, bounds, middle): (Check, IntervalDual<N>, f64)| {
             let value = bounds.tighten(middle, &region.half_widths).value;
-            let [low, high] = [value.low, value.high].map(|value| self.broken_limit(check, value));
+            let [low, high] =
+                [value.low, value.high].map(|value| self.violated_limit(check, value));
             low.is_some() && low == high
         };
         let has_all =
             |servos_needed: [usize; 2]| servos_needed.iter().all(|servo| servos.contains(servo));
         // A leg's margin depends only on the crank's direction, not on the angle.
         let (leg, zero) = (&self.robot.lizard().leg, IntervalDual::constant(0.0));
-        let breaks_leg = servos.iter().any(|&servo| {
+        let violates_leg = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
             let bounds = leg
                 .pose_of_direction(end, zero, bounds.directions[servo])
@@ -197,27 +198,27 @@ impl<'a> Guard<'a> {
             let middle = leg
                 .pose_of_direction(end, 0.0, middle.directions[servo])
                 .margin;
-            is_broken((Check::LEG[servo], bounds, middle))
+            is_violated((Check::LEG[servo], bounds, middle))
         });
-        let breaks_end = |end: End| {
+        let violates_end = |end: End| {
             let values = middle.five_bar(end).conditions(end).map(|(_, value)| value);
             let conditions = bounds.five_bar(end).conditions(end).into_iter().zip(values);
             has_all(end.servos()) && { conditions }
-                .any(|((check, servos_needed), value)| is_broken((check, servos_needed, value)))
+                .any(|((check, servos_needed), value)| is_violated((check, servos_needed, value)))
         };
-        let breaks_side = |side: Side| {
+        let violates_side = |side: Side| {
             let check = Check::STROKE[usize::from(side == Side::Right)];
             has_all(side.servos())
-                && is_broken((check, bounds.slider(side).s, middle.slider(side).s))
+                && is_violated((check, bounds.slider(side).s, middle.slider(side).s))
         };
-        let is_refused = breaks_leg
-            || End::ALL.into_iter().any(breaks_end)
-            || Side::ALL.into_iter().any(breaks_side);
+        let is_refused = violates_leg
+            || End::ALL.into_iter().any(violates_end)
+            || Side::ALL.into_iter().any(violates_side);
         (!is_refused).then_some((bounds, middle))
     }
 
-    /// The relaxed limit that a value breaks, if any.
-    fn broken_limit(&self, check: Check, value: f64) -> Option<f64> {
+    /// The relaxed limit that a value violates, if any.
+    fn violated_limit(&self, check: Check, value: f64) -> Option<f64> {
         // The limit of crossed tips is 0 and not a field of `Limits`, so the value is shifted instead of the limit.
         let shift = match check {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
@@ -304,7 +305,7 @@ mod tests {
     }
 
     /// Each limit is tested alone, because a pose that approaches some limits, such as that of crossed tips, always
-    /// breaks another limit first.
+    /// violates another limit first.
     #[test]
     fn each_limit_is_relaxed_by_more_than_the_firmwares_error_but_not_without_bound() {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
@@ -324,9 +325,9 @@ mod tests {
             ];
             for (checks, [inside, outside]) in cases {
                 for &check in checks {
-                    assert_eq!(guard.broken_limit(check, inside), None, "{name}: {check}");
+                    assert_eq!(guard.violated_limit(check, inside), None, "{name}: {check}");
                     assert!(
-                        guard.broken_limit(check, outside).is_some(),
+                        guard.violated_limit(check, outside).is_some(),
                         "{name}: {check}"
                     );
                 }
@@ -337,13 +338,13 @@ mod tests {
     #[test]
     fn a_pose_at_a_limit_that_the_firmware_may_accept_is_never_refused() {
         const ALL_SERVOS: [usize; 4] = [0, 1, 2, 3];
-        let mut seen_checks: Vec<Check> = Vec::new();
+        let mut reached_checks: Vec<Check> = Vec::new();
         for name in ["paper", "unequal", "paper at its type-2 limit"] {
             let robot = robot(name);
             let guard = Guard::new(&robot);
             let relaxed = relaxed_limits(&robot);
             let neutral = robot.servos().each_ref().map(|servo| servo.neutral);
-            let broken_check_at = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {
+            let violated_check_at = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {
                 Ok(solution) => relaxed
                     .violations(&solution)
                     .map(|violation| Some(violation.check))
@@ -361,12 +362,12 @@ mod tests {
                         })
                     };
                     let (mut accepted_deg, mut refused_deg) = (0.0, 90.0);
-                    if broken_check_at(angles_at(refused_deg)).is_none() {
+                    if violated_check_at(angles_at(refused_deg)).is_none() {
                         continue;
                     }
                     while refused_deg - accepted_deg > 1e-6 {
                         let middle = (accepted_deg + refused_deg) / 2.0;
-                        match broken_check_at(angles_at(middle)) {
+                        match violated_check_at(angles_at(middle)) {
                             None => accepted_deg = middle,
                             Some(_) => refused_deg = middle,
                         }
@@ -380,7 +381,7 @@ mod tests {
                         "{name}: {:?}",
                         angles_at(accepted_deg)
                     );
-                    seen_checks.extend(broken_check_at(angles_at(refused_deg)).flatten());
+                    reached_checks.extend(violated_check_at(angles_at(refused_deg)).flatten());
                 }
             }
         }
@@ -390,8 +391,8 @@ mod tests {
             ("leg", &Check::LEG),
             ("stroke", &Check::STROKE),
         ] {
-            let is_seen = seen_checks.iter().any(|check| checks.contains(check));
-            assert!(is_seen, "no pose at the limit of a {limit}");
+            let is_reached = reached_checks.iter().any(|check| checks.contains(check));
+            assert!(is_reached, "no pose at the limit of a {limit}");
         }
     }
 }

@@ -28,10 +28,12 @@ impl<const N: usize> IntervalDual<N> {
     }
 
     /// Largest change of the number from its value at the middle angles, if no servo is farther than its half width
-    /// (deg) from its middle angle.
+    /// width (deg) from its middle angle.
     pub fn largest_change(&self, half_widths: &[f64; N]) -> f64 {
         let slopes = self.derivatives.iter().zip(half_widths);
-        slopes.fold(0.0, |sum, (slope, half)| sum + slope.max_abs() * half)
+        slopes.fold(0.0, |sum, (slope, half_width)| {
+            sum + slope.max_abs() * half_width
+        })
     }
 
     /// Tightens the bounds of the number by its value at the middle angles and its largest change from that value.
@@ -151,20 +153,21 @@ mod tests {
     #[test]
     fn bounds_of_a_linkage_contain_its_poses_and_their_rates() {
         for (left, right) in [(120.0, 60.0), (95.0, 40.0), (140.0, 80.0)] {
-            for half in [0.01, 0.1, 1.0] {
-                let bounds_around = |middle: f64| Interval::new(middle - half, middle + half);
+            for half_width in [0.01, 0.1, 1.0] {
+                let bounds_around =
+                    |middle: f64| Interval::new(middle - half_width, middle + half_width);
                 let angles = [(0, left), (1, right)];
                 let duals = numbers_at(
                     angles.map(|(i, angle)| IntervalDual::<2>::angle(i, bounds_around(angle))),
                 );
                 let middle = numbers_at([left, right]);
                 for (x, y) in [(-1.0, 1.0), (0.5, 0.5), (1.0, -1.0), (-0.2, -1.0)] {
-                    let crank_angles = [left + x * half, right + y * half];
+                    let crank_angles = [left + x * half_width, right + y * half_width];
                     let step_deg = 1e-5;
                     for (i, value) in numbers_at(crank_angles).into_iter().enumerate() {
                         let IntervalDual { value: bounds, .. } = duals[i];
                         assert!(bounds.low <= value && value <= bounds.high);
-                        let change = duals[i].largest_change(&[half; 2]);
+                        let change = duals[i].largest_change(&[half_width; 2]);
                         assert!((value - middle[i]).abs() <= change + 1e-12);
                         for servo in 0..2 {
                             let mut next_angles = crank_angles;
@@ -173,7 +176,7 @@ mod tests {
                             let Interval { low, high } = duals[i].derivatives[servo];
                             assert!(low - 1e-4 <= rate && rate <= high + 1e-4);
                             // The bounds of the derivatives are not much wider than needed.
-                            assert!(half > 0.1 || high - low < 0.1, "{low} {high}");
+                            assert!(half_width > 0.1 || high - low < 0.1, "{low} {high}");
                         }
                     }
                 }

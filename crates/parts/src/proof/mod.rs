@@ -32,7 +32,7 @@ use crate::layers::body::Body;
 use crate::proof::clearance::Clearance;
 use guard::Guard;
 pub use search::FAR_MM;
-use search::SearchResult;
+use search::{Nearest, SearchResult};
 use shape_pairs::Task;
 
 /// Least allowed distance of parts that are not designed to touch, mm: more than a printer's error.
@@ -110,8 +110,12 @@ impl NearestPair {
     /// The clash of the bodies if they come, or may come, closer than `min_mm`; `None` otherwise.
     fn clash(&self, min_mm: f64) -> Option<Clash> {
         match &self.seen {
-            Some(seen) if seen.mm < min_mm.min(0.0) => Some(Clash::Overlap(Box::new(seen.clone()))),
-            Some(seen) if seen.mm < min_mm => Some(Clash::Narrow(Box::new(seen.clone()))),
+            Some(clearance) if clearance.mm < min_mm.min(0.0) => {
+                Some(Clash::Overlap(Box::new(clearance.clone())))
+            }
+            Some(clearance) if clearance.mm < min_mm => {
+                Some(Clash::Narrow(Box::new(clearance.clone())))
+            }
             _ if self.proved < min_mm => Some(Clash::Unproved(Box::new(self.clone()))),
             _ => None,
         }
@@ -119,7 +123,9 @@ impl NearestPair {
 
     /// The least distance in `seen`, mm; the proved bound if `seen` is `None`.
     fn least_distance(&self) -> f64 {
-        self.seen.as_ref().map_or(self.proved, |seen| seen.mm)
+        self.seen
+            .as_ref()
+            .map_or(self.proved, |clearance| clearance.mm)
     }
 }
 
@@ -216,11 +222,10 @@ impl<'a> Questions<'a> {
         Answer { pinned, nearest }
     }
 
-    /// Answers all questions and makes the proof. `known_answer` returns an answer that
-    /// [`Questions::answer_one`] has already given for an index. The proof ends at the first parts that
-    /// do not fit, unless the quick check has found such parts: then each of its worst pairs is
-    /// bounded. After parts that may not fit, the remaining questions are answered with fewer
-    /// regions and without `known_answer`.
+    /// Answers all questions and composes the proof. `known_answer` returns an answer that [`Questions::answer_one`]
+    /// has already given for an index. The proof ends at the first parts that do not fit, unless the quick check has
+    /// found such parts: then each of its worst pairs is bounded. After parts that may not fit, the remaining questions
+    /// are answered with fewer regions and without `known_answer`.
     pub fn answer_all(
         &self,
         mut known_answer: impl FnMut(usize) -> Option<Answer>,
@@ -305,10 +310,10 @@ impl Assembly {
                 && nearest.as_ref().is_none_or(|nearest| mm < nearest.proved)
             {
                 nearest = Some(self.nearest_pair(SearchResult {
-                    proved: mm,
+                    lower_bound: mm,
                     bodies: pair.bodies,
-                    seen: Some((*pose, mm)),
-                    doubt: None,
+                    nearest: Some(Nearest { pose: *pose, mm }),
+                    unproved_angles: None,
                     region_count: 0,
                 }));
             }
@@ -317,7 +322,7 @@ impl Assembly {
         nearest
     }
 
-    /// Converts a search result to body names and angles. Angles on which it does not depend are neutral.
+    /// Converts a search result to body names and angles. Angles on which the result does not depend are neutral.
     fn nearest_pair(&self, result: SearchResult) -> NearestPair {
         let [first, second] = result.bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
@@ -325,16 +330,16 @@ impl Assembly {
             std::array::from_fn(|i| optional_angles[i].unwrap_or(neutral[i]))
         };
         NearestPair {
-            seen: result.seen.map(|(pose, mm)| Clearance {
+            seen: result.nearest.map(|Nearest { pose, mm }| Clearance {
                 first: first.clone(),
                 second: second.clone(),
                 pose: pose.pose.into(),
                 mm,
             }),
-            doubt: result.doubt.map(angles_of),
+            doubt: result.unproved_angles.map(angles_of),
             first,
             second,
-            proved: result.proved,
+            proved: result.lower_bound,
         }
     }
 }

@@ -18,8 +18,8 @@ const HALVING_COUNT: usize = 12;
 /// Largest number of tasks that the proof bounds if the quick check finds collisions.
 const MAX_WORST_TASKS: usize = 3;
 
-/// Returns the [`MAX_WORST_TASKS`] tasks whose parts come nearest, out of those whose parts come too near at one of the checked
-/// poses; `None` if no parts come too near.
+/// Returns at most [`MAX_WORST_TASKS`] tasks: of those whose parts come too near at a checked pose, the ones whose
+/// parts come nearest. `None` if no parts come too near.
 pub fn worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
     let mut poses: Vec<Solution> = robot

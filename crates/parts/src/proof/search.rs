@@ -1,9 +1,9 @@
 //! Branch and bound: the least distance in a region, with a proven lower bound.
 //!
-//! The region is halved again and again; the half in which the distance may be least is always halved next. The
-//! distance at a region's middle, less the largest motion of any point from there, is a lower bound of every
-//! distance in the region. The distance at any accepted pose is an upper bound of the least distance. The search ends
-//! when the two bounds are close.
+//! The search is best-first: it repeatedly halves the region with the smallest lower bound. The distance at a region's
+//! middle, less the largest motion of any point from there, is a lower bound of every distance in the region. The
+//! distance at any accepted pose is an upper bound of the least distance. The search ends when the two bounds are
+//! close.
 
 use std::collections::BTreeMap;
 
@@ -36,17 +36,24 @@ const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 #[derive(Clone, Debug)]
 pub struct SearchResult {
     /// Lower bound of the distance, mm; never more than [`FAR_MM`].
-    pub proved: f64,
+    pub lower_bound: f64,
     /// The two nearest bodies, by their index in [`Assembly::bodies`].
     pub bodies: [usize; 2],
-    /// The accepted pose with the least distance found, and that distance, mm; `None` if no pose with a distance
-    /// below [`FAR_MM`] is found.
-    pub seen: Option<(Solution, f64)>,
-    /// Angles of some servos, deg, at the middle of the region that limits the bound; only if the bound is less
-    /// than the distance in `seen`.
-    pub doubt: Option<[Option<f64>; 4]>,
+    /// The accepted pose with the least distance found; `None` if no distance below [`FAR_MM`] is found.
+    pub nearest: Option<Nearest>,
+    /// Angles of some servos, deg, near which no larger distance could be proved; only if the bound is less than the
+    /// distance in `nearest`.
+    pub unproved_angles: Option<[Option<f64>; 4]>,
     /// Number of regions checked.
     pub region_count: u64,
+}
+
+/// A pose and the distance of the two nearest shapes at it.
+#[derive(Clone, Debug)]
+pub struct Nearest {
+    pub pose: Solution,
+    /// The distance, mm.
+    pub mm: f64,
 }
 
 /// A region, and the pairs of shapes that may be near each other in it.
@@ -62,8 +69,8 @@ struct BoundedRegion<const N: usize> {
     candidate_pairs: Vec<u32>,
 }
 
-/// The least distance of a task's pairs of shapes over all poses that the guard accepts, from at most `max_regions`
-/// regions.
+/// Finds the least distance between a task's pairs of shapes over all poses that the guard accepts. Stops after
+/// `max_regions` regions.
 pub fn find_least_distance(
     assembly: &Assembly,
     guard: &Guard,
@@ -91,21 +98,22 @@ fn search<const N: usize>(
         guard,
         task,
         servos,
-        seen: None,
+        nearest: None,
         nearest_pair_index: 0,
         region_count: 0,
     };
     search.run(max_regions)
 }
 
+/// A search over the angles of `N` servos.
 struct Search<'a, const N: usize> {
     assembly: &'a Assembly,
     guard: &'a Guard<'a>,
     task: &'a Task,
     servos: [usize; N],
-    /// The accepted pose with the least distance found, and that distance, mm.
-    seen: Option<(Solution, f64)>,
-    /// The index of the pair of shapes with the distance in `seen`.
+    /// The accepted pose with the least distance found.
+    nearest: Option<Nearest>,
+    /// The index of the pair of shapes with the distance in `nearest`.
     nearest_pair_index: u32,
     region_count: u64,
 }
@@ -113,7 +121,9 @@ struct Search<'a, const N: usize> {
 impl<const N: usize> Search<'_, N> {
     /// Upper bound of the least distance, mm.
     fn upper_bound(&self) -> f64 {
-        self.seen.as_ref().map_or(FAR_MM, |seen| seen.1.min(FAR_MM))
+        self.nearest
+            .as_ref()
+            .map_or(FAR_MM, |nearest| nearest.mm.min(FAR_MM))
     }
 
     fn run(mut self, max_regions: u64) -> SearchResult {
@@ -132,8 +142,8 @@ impl<const N: usize> Search<'_, N> {
                 bounded_region.region.middle.map(total_order_key),
             )
         };
-        let whole_region = self.bound_region(all_poses, &all_pairs).into_iter();
-        let mut open_regions: BTreeMap<_, _> = whole_region
+        let first_region = self.bound_region(all_poses, &all_pairs).into_iter();
+        let mut open_regions: BTreeMap<_, _> = first_region
             .map(|bounded_region| (key_of(&bounded_region), bounded_region))
             .collect();
         while let Some((_, bounded_region)) = open_regions.pop_first() {
@@ -152,7 +162,7 @@ impl<const N: usize> Search<'_, N> {
                 .region
                 .half_widths
                 .iter()
-                .all(|half| *half < MIN_HALF_WIDTH_DEG)
+                .all(|half_width| *half_width < MIN_HALF_WIDTH_DEG)
                 || self.region_count >= max_regions
             {
                 return self.into_result(bounded_region.lower_bound, Some(&bounded_region));
@@ -167,15 +177,20 @@ impl<const N: usize> Search<'_, N> {
         self.into_result(upper_bound, None)
     }
 
-    fn into_result(self, proved: f64, doubt: Option<&BoundedRegion<N>>) -> SearchResult {
-        let unseen_region = doubt.filter(|_| self.seen.is_none());
+    /// Makes the result. `unproved_region` is the region in which no larger distance could be proved.
+    fn into_result(
+        self,
+        lower_bound: f64,
+        unproved_region: Option<&BoundedRegion<N>>,
+    ) -> SearchResult {
+        let region_without_pose = unproved_region.filter(|_| self.nearest.is_none());
         let pair_index =
-            unseen_region.map_or(self.nearest_pair_index, |region| region.bounding_pair);
+            region_without_pose.map_or(self.nearest_pair_index, |region| region.bounding_pair);
         SearchResult {
-            proved: proved - ROUNDING_MM,
+            lower_bound: lower_bound - ROUNDING_MM,
             bodies: self.task.shape_pairs[pair_index as usize].bodies,
-            doubt: doubt.map(|doubt| self.angles(&doubt.region)),
-            seen: self.seen,
+            unproved_angles: unproved_region.map(|bounded| self.angles(&bounded.region)),
+            nearest: self.nearest,
             region_count: self.region_count,
         }
     }
@@ -218,18 +233,19 @@ impl<const N: usize> Search<'_, N> {
             split_servo: most_influential_servo(&bounds, &region),
             candidate_pairs: Vec::new(),
         };
-        let is_closed = placement.origin.is_finite() && placement.x_axis.is_finite();
-        let mut nearest = (f64::INFINITY, 0);
+        // At the region's middle the loops of the linkages may not close.
+        let loops_close = placement.origin.is_finite() && placement.x_axis.is_finite();
+        let (mut min_distance, mut nearest_pair) = (f64::INFINITY, 0);
         for &index in candidate_pairs {
             let shape_pair = &self.task.shape_pairs[index as usize];
-            let lower_bound = if !is_closed {
+            let lower_bound = if !loops_close {
                 f64::NEG_INFINITY
             } else if shape_pair.is_far(&placement, deviations, self.upper_bound()) {
                 continue;
             } else {
                 let distance = shape_pair.distance(&placement);
-                if distance < nearest.0 {
-                    nearest = (distance, index);
+                if distance < min_distance {
+                    (min_distance, nearest_pair) = (distance, index);
                 }
                 let lower_bound = shape_pair.distance_bound(&placement, &bounds, &region);
                 if lower_bound.is_nan() {
@@ -246,11 +262,14 @@ impl<const N: usize> Search<'_, N> {
                 }
             }
         }
-        if nearest.0 < self.upper_bound() - TOLERANCE_MM / 4.0
+        if min_distance < self.upper_bound() - TOLERANCE_MM / 4.0
             && let Some(pose) = self.guard.find_pose(self.angles(&region))
         {
-            self.seen = Some((pose, nearest.0));
-            self.nearest_pair_index = nearest.1;
+            self.nearest = Some(Nearest {
+                pose,
+                mm: min_distance,
+            });
+            self.nearest_pair_index = nearest_pair;
         }
         (!bounded_region.candidate_pairs.is_empty()).then_some(bounded_region)
     }
@@ -279,18 +298,18 @@ fn most_influential_servo<const N: usize>(
     region: &Region<N>,
 ) -> usize {
     /// The lever arm by which a rotation is converted into a distance, mm.
-    const LEVER_MM: f64 = 30.0;
-    let (origin, axis_shift) = (bounds.origin, bounds.x_axis * LEVER_MM);
+    const LEVER_ARM_MM: f64 = 30.0;
+    let (origin, axis_shift) = (bounds.origin, bounds.x_axis * LEVER_ARM_MM);
     let coordinates = [origin.x, origin.y, axis_shift.x, axis_shift.y];
     let influence_of = |servo: usize| {
-        let half = region.half_widths[servo];
+        let half_width = region.half_widths[servo];
         coordinates.iter().fold(0.0, |sum, coordinate| {
             // Without a finite bound, the widest angle is halved.
-            let change = coordinate.derivatives[servo].max_abs() * half;
+            let change = coordinate.derivatives[servo].max_abs() * half_width;
             sum + if change.is_finite() {
                 change
             } else {
-                half * 1e6
+                half_width * 1e6
             }
         })
     };

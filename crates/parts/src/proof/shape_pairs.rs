@@ -159,11 +159,11 @@ fn large_enough_holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
 
 impl ShapePair {
     /// True if the shapes are certainly at least `min_mm` apart while the second shape's frame moves by up to
-    /// `shift_mm` and the tips of its unit axes by up to `turn`. It is a quick test: false does not mean that the
+    /// `shift_mm` and the tips of its unit axes by up to `turn`. This is a quick test: false does not mean that the
     /// shapes are near.
     pub fn is_far(&self, placement: &Placement, [shift_mm, turn]: [f64; 2], min_mm: f64) -> bool {
-        let [(a, reach_a), (b, reach_b)] = self.discs;
-        let gap = (placement.map(b) - a).length() - reach_a - reach_b;
+        let [(a, a_radius), (b, b_radius)] = self.discs;
+        let gap = (placement.map(b) - a).length() - a_radius - b_radius;
         // When the frame turns, a point moves along both axes.
         gap - shift_mm - 2.0 * turn * self.lever_arm >= min_mm
     }

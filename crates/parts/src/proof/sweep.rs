@@ -1,7 +1,7 @@
 //! Rectangles, seen from above, that the bodies never leave at any accepted pose.
 //!
 //! Most pairs of bodies are never near each other, such as the couplers of head and tail. If their rectangles are
-//! apart, no poses need to be checked.
+//! apart, their distance need not be bounded.
 
 use lizard_kinematics::Vector;
 
@@ -49,6 +49,7 @@ pub fn are_apart(a: &Rectangle, b: &Rectangle, min_mm: f64) -> bool {
         .any(|(a, b)| a.low - b.high >= min_mm || b.low - a.high >= min_mm)
 }
 
+/// A sweep of the bodies on one mount over all accepted poses.
 struct Sweep<'a> {
     assembly: &'a Assembly,
     guard: &'a Guard<'a>,

@@ -1,6 +1,6 @@
 //! The file for MuJoCo: the robot on its floor, the motors, and the angles that they follow.
 //!
-//! MuJoCo requires a tree of bodies, so each closed loop is cut and a constraint closes it again.
+//! MuJoCo requires a tree of bodies, so each closed loop is cut, and a constraint closes it again.
 
 mod document;
 mod drives;
