@@ -1,4 +1,4 @@
-//! The extent of the tests: the number of random inputs and the duration of dialogues. Both are small on a developer's machine and large in
+//! Number of random inputs and duration of dialogues in tests. Both are small on a developer's machine and large in
 //! continuous integration.
 
 /// Returns a count of random inputs multiplied by the environment variable `LIZARD_FUZZ`, 1 by default.
@@ -27,7 +27,8 @@ pub fn read_number(name: &str) -> Option<u64> {
     Some(number.unwrap_or_else(|_| panic!("{name} is {text:?}; it must be a whole number")))
 }
 
-/// Returns the number in an environment variable, or a default if it is not set. Rejects 0, because a test without inputs would check nothing.
+/// Returns the number in an environment variable, or a default if it is not set. Rejects 0, because a test without
+/// inputs would check nothing.
 fn read_positive_number(name: &str, default: u64) -> u64 {
     let number = read_number(name).unwrap_or(default);
     assert!(number > 0, "{name} is 0; it must be 1 or more");

@@ -16,3 +16,6 @@ pub use lizard_host::sim::lines::Line;
 pub use robots::{
     NamedRobot, paper_robot, patrolling_robot, rng, robot, robot_with_patrol, robots, root, seed,
 };
+
+/// CPU cycles in a microsecond, for pulse widths in floating point.
+pub const CYCLES_PER_US: f64 = simulated_uno::CYCLES_PER_US as f64;

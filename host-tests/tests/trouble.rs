@@ -8,7 +8,8 @@ use lizard_host_tests::trouble::{Activity, Scenario, play, run_campaign};
 use lizard_host_tests::{FirmwareBench, patrolling_robot, robot_with_patrol, root, seed};
 use lizard_robot::Robot;
 
-/// The number of scenarios. Of thirteen scenarios, four are drives, and one belongs to each of the other nine activities.
+/// The number of scenarios. Of thirteen scenarios, four are drives, and one belongs to each of the other nine
+/// activities.
 const SCENARIO_COUNT: u64 = 156;
 
 #[test]

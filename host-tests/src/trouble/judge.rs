@@ -7,9 +7,9 @@ use lizard_host::patrol::PATROL;
 use lizard_host::sim::lines::Line;
 use lizard_robot::Robot;
 use lizard_rules::{BrokenRule, Event, Limits, Observer, Pulse, Rule, Time, led};
-use simulated_uno::{CYCLES_PER_US, Pin, ResetCause, State};
+use simulated_uno::{Pin, ResetCause, State};
 
-use crate::FRAME_CYCLES;
+use crate::{CYCLES_PER_US, FRAME_CYCLES};
 
 use super::record::{Exchange, MS, Record, Span};
 use super::scenario::Scenario;
@@ -23,7 +23,7 @@ const SENT_BYTE_CYCLES: u64 = 1_360;
 
 /// Returns the limits for a scenario's robot.
 fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
-    let cycles_of_us = |us: f64| (us * CYCLES_PER_US as f64).round() as u32;
+    let cycles_of_us = |us: f64| (us * CYCLES_PER_US).round() as u32;
     let speed_limits = robot.speed_limits();
     let max_speed = speed_limits.slew.max(speed_limits.gait_slew);
     let mentions = |text: &str| {

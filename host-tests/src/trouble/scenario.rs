@@ -1,5 +1,5 @@
-//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and commands that finally check
-//! the robot.
+//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and commands that finally
+//! check the robot.
 
 mod troubles;
 
@@ -281,8 +281,8 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Lets a person start to drive by radio. A quarter of these scenarios begin with noise, as from a radio module without a
-    /// phone.
+    /// Lets a person start to drive by radio. A quarter of these scenarios begin with noise, as from a radio module
+    /// without a phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();

@@ -5,8 +5,8 @@ use fastrand::Rng;
 use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
-use lizard_host_tests::{FirmwareBench, robot};
-use simulated_uno::Fidelity;
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
+use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::baud_rate::ask_until_answered;
 use crate::measurements::recorded_pulses;
@@ -31,7 +31,7 @@ fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> Fi
         bench.uno.send(&sent_bytes);
         bench.run_ms(1000);
         for (pulses, servo) in recorded_pulses(&bench).iter().zip(robot().servos()) {
-            let cycles_of_us = |us: f64| (us * 16.0).round() as u64;
+            let cycles_of_us = |us: f64| (us * CYCLES_PER_US).round() as u64;
             let allowed_cycles = cycles_of_us(servo.min_us) - 2..=cycles_of_us(servo.max_us) + 2;
             for pulse in pulses {
                 assert!(
@@ -45,9 +45,9 @@ fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> Fi
     assert_eq!(
         bench.uno.reset_events().len(),
         1,
-        "the only reset is power-on"
+        "there was a reset besides power-on"
     );
-    // Wait for the bytes that are still queued, in the sender and in the robot.
+    // Waits for the bytes that are still queued in the sender and in the robot.
     while bench.uno.bytes_unsent() > 0 {
         bench.run_ms(1000);
     }
@@ -78,7 +78,11 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     let intervals = operations
         .windows(2)
         .map(|pair| pair[1].cycle - pair[0].cycle);
-    assert!(intervals.min().is_none_or(|interval| interval > 3 * 16_000));
+    assert!(
+        intervals
+            .min()
+            .is_none_or(|interval| interval > 3 * CYCLES_PER_MS)
+    );
 }
 
 #[test]

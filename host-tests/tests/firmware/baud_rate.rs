@@ -7,8 +7,8 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity};
 use crate::pulses::servo_edges;
 use crate::{Status, boot_and_command, boot_standing, first_moving_gait, run_in_both_simulations};
 
-/// The baud rates, each with the number of `status` lines until the first answer after a cold start. One line is
-/// lost at each rate that the robot tries first, and one more line is lost because only a part of it is received.
+/// The baud rates, each with the number of `status` lines until the first answer after a cold start. One line is lost
+/// at each rate that the robot tries first, and one more line is lost because only a part of it is received.
 const BAUD_RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
 
 /// Sends `status` until the robot answers, and returns the number of lines sent.
@@ -108,7 +108,7 @@ fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
             1,
             "{baud} baud after a hang"
         );
-        assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
+        assert_eq!(Status::read(&mut bench).text("reset"), "watchdog");
         bench.uno.reset();
         bench.uno.set_baud(115_200.0);
         bench.run_ms(1_000);
@@ -174,7 +174,7 @@ fn noise_is_never_obeyed_and_the_rate_is_found_again() {
     assert!(!was_obeyed);
     bench.uno.set_baud(115_200.0);
     assert!(ask_until_answered(&mut bench) <= 8);
-    assert_eq!(Status::of(&mut bench).number("late"), 0.0);
+    assert_eq!(Status::read(&mut bench).number("late"), 0.0);
 }
 
 #[test]

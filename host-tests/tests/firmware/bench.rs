@@ -3,9 +3,9 @@
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, avr_gcc::compile_c};
 use simulated_uno::{Fidelity, Uno};
 
-/// Program that times slots of 4 ms in a busy loop, without interrupts. The pulses of A1 to A4 are 1000, 1200, 1400
+/// A program that times slots of 4 ms in a busy loop, without interrupts. The pulses of A1 to A4 are 1000, 1200, 1400
 /// and 1600 us wide in the first frame, and grow by one microsecond per frame. The byte `r` stops the pulses, and `?`
-/// prints two lines of information and an answer.
+/// prints two notes and an answer.
 const SERVO_PROGRAM: &str = r##"
     #include <avr/io.h>
     static void write(const char *text) {
@@ -46,7 +46,7 @@ fn bench() -> FirmwareBench {
 }
 
 #[test]
-fn the_answer_to_a_line_is_distinguished_from_the_information_before_it() {
+fn the_answer_to_a_line_is_distinguished_from_the_notes_before_it() {
     let mut bench = bench();
     assert_eq!(bench.next_line(500).as_deref(), Some("# lizard test"));
     let (notes, answer) = bench.ask("?");

@@ -11,7 +11,8 @@ use crate::{neutral_widths, run_in_both_simulations};
 /// Longest time for which other handlers and code with interrupts disabled may delay a servo interrupt, cycles.
 const MAX_BLOCKED_CYCLES: u64 = 160;
 
-/// An interval of `length` cycles with interrupts blocked that begins `cycles_before_edge` cycles before an edge.
+/// An interval of `length` cycles in which interrupts are blocked. It begins `cycles_before_edge` cycles before an
+/// edge.
 #[derive(Clone, Copy, Debug)]
 struct BlockedInterval {
     cycles_before_edge: u64,
@@ -26,8 +27,8 @@ enum DelayedEdges {
     Both,
 }
 
-/// Runs one frame for each blocked interval, which delays the chosen edges of all servos. Returns the frames with
-/// the widths that they should have.
+/// Runs one frame for each blocked interval, which delays the chosen edges of all servos. Returns the frames, each with
+/// the widths that it should have.
 fn run_blocked_frames(
     run: &mut ReferenceRun,
     edges: DelayedEdges,
@@ -54,8 +55,8 @@ fn run_blocked_frames(
     run.frames_since(start)
 }
 
-/// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. For each length, their starts are a
-/// few cycles apart: the first interval begins at the edge, the last one ends before it.
+/// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. The starts of the intervals of a length
+/// are seven cycles apart: the first interval begins at the edge, and the last ends before the edge.
 fn too_long_intervals() -> Vec<BlockedInterval> {
     [200, 230, 300, 500, 900]
         .into_iter()

@@ -1,7 +1,7 @@
 //! Tests of the servo settings, measured at the pins, and of the settings that survive a loss of power.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
-use lizard_host_tests::robot;
+use lizard_host_tests::{CYCLES_PER_US, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, PowerCut, State};
 
 use crate::measurements::{
@@ -13,10 +13,10 @@ use crate::{
     Status, boot_standing, first_moving_gait, neutral_widths, pose_command, run_in_both_simulations,
 };
 
-/// Returns A1's pulse width for a trim, a gain (us per degree) and a sweep from neutral, cycles.
+/// Returns A1's pulse width, cycles, for a trim, a gain (us per degree) and a sweep from neutral.
 fn calibrated_width(trim_deg: f64, gain: f64, sweep_deg: f64) -> u64 {
     let servo = &robot().servos()[0];
-    ((servo.neutral_us + gain * (trim_deg + sweep_deg)) * 16.0).round() as u64
+    ((servo.neutral_us + gain * (trim_deg + sweep_deg)) * CYCLES_PER_US).round() as u64
 }
 
 /// Returns A1's gain, us per degree.
@@ -26,7 +26,7 @@ fn gain() -> f64 {
 
 /// Asserts that a pulse width (cycles) is the expected one, within the rounding of angles.
 fn assert_near(width: u64, expected: u64, message: &str) {
-    // An angle is stored in steps of 0.0055 deg and sent with two decimals.
+    // An angle is stored in steps of 0.0055 deg and commanded with two decimals.
     assert!(
         width.abs_diff(expected) <= 4,
         "{message}: {width}, {expected}"
@@ -65,7 +65,7 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
             assert!(pulses.iter().all(|pulse| pulse.width == neutral));
         }
         // The guard and `status` use the true angle.
-        assert!((Status::of(&mut bench).pose()[0] - robot().servos()[0].neutral).abs() < 0.01);
+        assert!((Status::read(&mut bench).pose()[0] - robot().servos()[0].neutral).abs() < 0.01);
     });
 }
 
@@ -153,7 +153,7 @@ fn saved_settings_apply_from_the_first_pulse_after_power_on() {
             !lines[lines.len() - 12..]
                 .iter()
                 .any(|line| line.text.contains("calibration:")),
-            "a note about the calibration although the memory is valid"
+            "there is a note about the calibration although the memory is valid"
         );
     });
 }
@@ -185,7 +185,7 @@ fn load_factory_and_power_on_discard_unsaved_settings() {
     assert_eq!(
         read_calibration(&mut bench),
         saved_calibration,
-        "factory alone saves nothing"
+        "`factory` alone has saved settings"
     );
 }
 
@@ -214,17 +214,17 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
         for operation in &operations {
             assert_ne!(
                 operation.old_value, operation.new_value,
-                "only bytes that differ"
+                "an unchanged byte is written"
             );
         }
         for pair in operations.windows(2) {
             assert!(
                 pair[1].cycle - pair[0].cycle >= 3 * CYCLES_PER_MS,
-                "one at a time"
+                "two bytes are written at once"
             );
         }
         assert_eq!(run.late_edge_count(), 0);
-        let status = Status::of(&mut run.bench);
+        let status = Status::read(&mut run.bench);
         assert_eq!(status.number("rx_lost"), 0.0);
     });
 }
@@ -279,7 +279,10 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
             .text
             .clone();
         assert_eq!(last_line, format!("# boot: {gait}"));
-        assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
+        assert_eq!(
+            Status::read(&mut bench).text("gait"),
+            gait.replace(' ', "-")
+        );
         power_cycle(&mut bench);
         bench.run_ms(2000);
         bench.uno.send(b" ");
@@ -315,7 +318,7 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
                 assert_eq!(
                     interval,
                     5 * FRAME_CYCLES + SLOT_CYCLES,
-                    "a tenth of a second"
+                    "the servos do not wake a tenth of a second apart"
                 );
             }
         }
@@ -323,9 +326,9 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
         assert_eq!(
             measure_widths(&mut bench),
             neutral_widths(),
-            "then it stands"
+            "the robot does not stand"
         );
-        // The robot has moved since, so its resting pose is no longer valid.
+        // The robot has moved since it rested, so its saved rest pose is no longer valid.
         power_cycle(&mut bench);
         bench.run_ms(300);
         let first_width = bench.uno.pulses(bench.pins()[0])[0].width;

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use lizard_host::sim::analysis::servo_frames_of;
-use lizard_host_tests::{FirmwareBench, robot};
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
 use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
 
@@ -55,7 +55,7 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
 fn case_and_blanks_do_not_matter() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     assert_eq!(bench.say("  StaNd\t "), "ok stand");
-    // Tries the gait with the most words in its name.
+    // The gait with the most words in its name.
     let mut gaits = gait_commands();
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("every robot has `stand`");
@@ -64,9 +64,12 @@ fn case_and_blanks_do_not_matter() {
         bench.say(&format!(" {typed_gait} ")).starts_with("ok "),
         "{typed_gait}"
     );
-    assert_eq!(Status::of(&mut bench).text("gait"), gait.replace(' ', "-"));
+    assert_eq!(
+        Status::read(&mut bench).text("gait"),
+        gait.replace(' ', "-")
+    );
     assert!(bench.say(" speed\t50 ").starts_with("ok speed"));
-    assert_eq!(Status::of(&mut bench).text("speed"), "50");
+    assert_eq!(Status::read(&mut bench).text("speed"), "50");
 }
 
 #[test]
@@ -76,17 +79,21 @@ fn a_line_may_have_63_characters_and_no_more() {
     assert_eq!(bench.say(&longest_line), "ok stand");
     assert!(bench.say(&format!("{longest_line} ")).starts_with("err 6 "));
     assert!(bench.say(&"x".repeat(500)).starts_with("err 6 "));
-    assert_eq!(bench.say("stop"), "ok stop", "the next line is a new one");
+    assert_eq!(
+        bench.say("stop"),
+        "ok stop",
+        "the line after an overlong line is not read as a new line"
+    );
 }
 
-/// Returns poses that break a servo's travel, a margin and a slider's stroke, each with its error code. The pose for
-/// the stroke is missing if, on this robot, each such pose also breaks a limit that the guard checks earlier.
+/// Returns poses that violate a servo's travel, a margin and a slider's stroke, each with its error code. The pose for
+/// the stroke is missing if, on this robot, each such pose also violates a limit that the guard checks earlier.
 fn refused_poses() -> Vec<(String, u8)> {
     let mut rng = Rng::with_seed(1);
     let mut poses: [Option<String>; 3] = [None, None, None];
     let servos = robot().servos();
     for n in 0..400_000 {
-        // Half of the poses are closer to neutral, where fewer limits are broken at once.
+        // Half of the poses are closer to neutral, where fewer limits are violated at once.
         let max_sweep = [175.0, 90.0, 45.0, 25.0][n % 4];
         let sweeps: [f64; 4] = std::array::from_fn(|_| max_sweep * (2.0 * rng.f64() - 1.0));
         let is_within_travel = |margin_deg: f64| {
@@ -117,9 +124,9 @@ fn refused_poses() -> Vec<(String, u8)> {
     }
     let [travel, margin, stroke] = poses;
     let travel = travel.expect("some servo does not turn by 175 degrees either way");
-    let margin = margin.expect("some pose breaks a margin");
+    let margin = margin.expect("some pose violates a margin");
     let stroke = stroke.map(|line| (line, 5));
-    println!("a pose that breaks a stroke alone: {stroke:?}");
+    println!("a pose that violates only a stroke: {stroke:?}");
     [(travel, 3), (margin, 4)]
         .into_iter()
         .chain(stroke)
@@ -127,20 +134,20 @@ fn refused_poses() -> Vec<(String, u8)> {
 }
 
 /// Returns the error code of a pose within the travel; `None` if the pose is allowed, or so close to a limit that
-/// rounding decides its code. The guard first checks the margins of both five-bars; for the guard, crossed crank tips
-/// are a type-2 margin below 0. It checks the strokes last.
+/// rounding decides its code. The guard first checks the margins of both five-bars, where crossed crank tips count as a
+/// type-2 margin below 0, and checks the strokes last.
 fn certain_refusal_code(solution: &Solution) -> Option<u8> {
-    let is_broken = |strictness: f64, is_stroke: bool| {
+    let is_violated = |strictness: f64, is_stroke: bool| {
         let mut violations = stricter_limits(strictness).violations(solution);
         violations.any(|violation| Check::STROKE.contains(&violation.check) == is_stroke)
     };
     let scale = robot().lizard().links.l10 / 135.0;
     let ends = [&solution.head, &solution.tail];
-    let is_doubtful = ends.iter().any(|end| end.gap.x.abs() < scale);
-    match (is_broken(-0.05, false), is_broken(0.05, false)) {
-        _ if is_doubtful => None,
+    let is_near_crossing = ends.iter().any(|end| end.gap.x.abs() < scale);
+    match (is_violated(-0.05, false), is_violated(0.05, false)) {
+        _ if is_near_crossing => None,
         (true, _) => Some(4),
-        (false, false) if is_broken(-0.05, true) => Some(5),
+        (false, false) if is_violated(-0.05, true) => Some(5),
         _ => None,
     }
 }
@@ -207,7 +214,7 @@ fn every_refused_line_gets_its_error_code_and_changes_nothing() {
             reference_bench.run_for_frames(2 * FRAMES_PER_SECOND)
         );
         let (bench_status, reference_status) =
-            (Status::of(&mut bench), Status::of(&mut reference_bench));
+            (Status::read(&mut bench), Status::read(&mut reference_bench));
         assert_eq!(bench_status.0, reference_status.0);
     });
 }
@@ -262,7 +269,7 @@ fn status_agrees_with_the_pulses() {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.say("stop");
         bench.run_ms(100);
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         let sent_angles = servo_frames_of(robot(), &bench.run_for_frames(1))[0]
             .angles
             .expect("each servo has a pulse");
@@ -288,13 +295,13 @@ fn status_agrees_with_the_pulses() {
 #[test]
 fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    bench.run_ms(3000); // the move to the gait's first pose
+    bench.run_ms(3000); // reaches the gait's first pose
     let gait_name = first_moving_gait();
     let gait = robot().gait(&gait_name).expect("the robot has this gait");
     let mut previous_sample: Option<(u64, Status)> = None;
     for _ in 0..20 {
-        bench.run_for_frames(0); // up to the start of the next frame
-        let (cycle, status) = (bench.uno.cycle(), Status::of(&mut bench));
+        bench.run_for_frames(0); // runs to the start of the next frame
+        let (cycle, status) = (bench.uno.cycle(), Status::read(&mut bench));
         if let Some((previous_cycle, previous_status)) = previous_sample {
             let frames = (cycle - previous_cycle) as f64 * 50.0 / FREQUENCY as f64;
             let counted_frames = status.number("frames") - previous_status.number("frames");
@@ -362,7 +369,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
 fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
-        bench.run_ms(3000); // the move to the gait's first pose
+        bench.run_ms(3000); // reaches the gait's first pose
         let gait_name = first_moving_gait();
         let gait = robot().gait(&gait_name).expect("the robot has this gait");
         // The pace is a multiple of 1/1024, so a pace of 10 % has an error of up to half a percent.
@@ -379,7 +386,7 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
             for (i, servo) in robot().servos().iter().enumerate() {
                 // Allows half a percent of a gait cycle, and one frame, since a gait cycle may not be a whole number
                 // of frames.
-                let frame_step = 16.0 * servo.us_per_degree.abs() * max_step_deg;
+                let frame_step = CYCLES_PER_US * servo.us_per_degree.abs() * max_step_deg;
                 let max_error = 0.005 * gait.period() * FRAMES_PER_SECOND as f64 * frame_step
                     + frame_step
                     + 2.0;
@@ -387,17 +394,17 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
                     let error = first_widths[i].abs_diff(second_widths[i]) as f64;
                     assert!(
                         error <= max_error,
-                        "{percent} %: {error} clock cycles apart after a gait cycle"
+                        "{percent} %: widths a gait cycle apart differ by {error} CPU cycles"
                     );
                 }
             }
-            // In a gait cycle, each leg makes its whole sweep at any speed.
+            // In a gait cycle, each leg makes its full sweep at any speed.
             let first_servo_widths = || first_cycle.iter().map(|widths| widths[0]);
             spans.push(
                 first_servo_widths().max().unwrap_or(0) - first_servo_widths().min().unwrap_or(0),
             );
         }
-        let frame_step = 16.0 * robot().servos()[0].us_per_degree.abs() * max_step_deg;
+        let frame_step = CYCLES_PER_US * robot().servos()[0].us_per_degree.abs() * max_step_deg;
         let is_equal_span = |span: &u64| span.abs_diff(spans[0]) as f64 <= 2.0 * frame_step;
         assert!(spans.iter().all(is_equal_span), "{spans:?}");
     });

@@ -1,4 +1,4 @@
-//! Comparison of the core on the AVR and on the host, bit for bit, with random commands for ten minutes.
+//! Comparison of the core on the AVR and on the host, cycle for cycle, with random commands for ten minutes.
 //! `LIZARD_MINUTES=2` shortens the run, so that many robots can be tried.
 
 use fastrand::Rng;
@@ -52,8 +52,9 @@ fn random_line(rng: &mut Rng) -> String {
     }
 }
 
-/// Sends lines until a second before the end. Each line ends at a random time within a frame, at least a
-/// millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous one.
+/// Sends lines until a second before the end, and returns their number. Each line ends at a random time within a frame,
+/// at least a millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous
+/// line.
 fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) -> u32 {
     let mut sent_count = 0;
     let mut eeprom_cycles = 0;
@@ -97,7 +98,7 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
             .expect("the robot stands")
             .cycle;
         let sent_line_count = send_random_lines(&mut bench, first_rise, &mut Rng::with_seed(seed));
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         assert_eq!(
             (status.number("late"), status.number("rx_lost")),
             (0.0, 0.0)
@@ -118,7 +119,7 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
             assert_eq!(
                 widths,
                 expected.map(u64::from),
-                "frame {n}, or the ELF is old"
+                "frame {n} differs, or the ELF is out of date"
             );
             distinct_widths.insert(widths);
         }

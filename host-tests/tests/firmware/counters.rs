@@ -1,4 +1,4 @@
-//! Tests of the fault counters: each test provokes faults and reads their counter, even while it changes.
+//! Tests of the fault counters: each test provokes faults and reads their counter, even while the counter changes.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use simulated_uno::Fidelity;
@@ -21,7 +21,7 @@ fn each_overrun_of_the_receiver_is_counted() {
         bench.uno.send(b"\n");
         bench.run_ms(20);
         assert_eq!(
-            Status::of(&mut bench).number("rx_lost"),
+            Status::read(&mut bench).number("rx_lost"),
             f64::from(overrun_count)
         );
     }
@@ -54,11 +54,11 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
             if new_delay == answer_delay {
                 break;
             }
-            // At some points of the frame, a tick delays the answer only sometimes. A little earlier in the frame, it
+            // At some points of the frame, a tick delays only some answers. A little earlier in the frame, a tick
             // delays every answer or none.
             read_lead += 200 * u64::from(attempt > 4);
             answer_delay = new_delay;
-            assert!(attempt < 40, "the answer delay does not settle");
+            assert!(attempt < 40, "the answer delay does not converge");
         }
         // Stalls the main loop at different times around its read of the count, and delays A2's rising edge during
         // the stall.
@@ -68,7 +68,7 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
             run.run_to(rise - read_lead - answer_delay - 15_000);
             run.bench.uno.poke(late_address, 255);
             run.bench.uno.poke(late_address + 1, 0);
-            let lines_before = run.bench.lines().len();
+            let line_count_before = run.bench.lines().len();
             send_status_at(&mut run, rise - read_lead - answer_delay);
             run.run_to(rise - read_lead - 500 + 2 * round);
             let current_cycle = run.bench.uno.cycle();
@@ -77,7 +77,7 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
             run.bench.uno.block_interrupts(700);
             run.run_to(rise + 550_000);
             assert_eq!(run.read_word("pulses::LATE_EDGES"), 256);
-            let lines = &run.bench.lines()[lines_before..];
+            let lines = &run.bench.lines()[line_count_before..];
             let answer = lines.iter().find(|line| line.is_answer());
             let answer = answer.expect("the robot answers").text.clone();
             let count = answer
@@ -125,5 +125,5 @@ fn a_counter_at_its_maximum_stays_there() {
     run.bench.uno.block_interrupts(700);
     run.bench.run_ms(20);
     assert_eq!(run.late_edge_count(), 65_535);
-    assert_eq!(Status::of(&mut run.bench).number("late"), 65_535.0);
+    assert_eq!(Status::read(&mut run.bench).number("late"), 65_535.0);
 }

@@ -1,6 +1,6 @@
-//! Tests of the firmware with a missing or damaged robot section in the flash: it sends no pulse, and its console
-//! and LED say why. The core's own tests (`section/damaged.rs`) flip every bit. Here the firmware itself reads the
-//! chip's flash, where no slice bound stops a read beyond the section.
+//! Tests of the firmware with a missing or damaged robot section in the flash: the firmware sends no pulse, and its
+//! console and LED say why. The core's own tests (`section/damaged.rs`) flip every bit. Here the firmware itself reads
+//! the chip's flash, where no slice bound stops a read beyond the section.
 
 use std::mem::offset_of;
 use std::ops::Range;
@@ -11,16 +11,15 @@ use lizard_host::board::SimulatedBoard;
 use lizard_host::firmware::read_with_robot;
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, rng, robot, root};
 use lizard_robot::Robot;
-use simulated_uno::{Edge, Fidelity, Image, Pin};
+use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin};
 
+use crate::measurements::LED;
 use crate::{first_moving_gait, for_each_in_parallel, pose_command, run_in_both_simulations};
 
 const MISSING_ROBOT_NOTE: &str = "# fault: no robot in the flash, write one";
 const OTHER_VERSION_NOTE: &str =
     "# fault: the robot in the flash is for another version, write it again";
 const DAMAGED_ROBOT_NOTE: &str = "# fault: the robot in the flash is damaged, write it again";
-
-const LED: Pin = Pin::d(13);
 
 /// Bytes in the flash in place of a valid robot.
 struct DamagedSection {
@@ -65,7 +64,7 @@ fn write_word(section: &mut [u8], offset: usize, word: u16) {
     section[start..start + 2].copy_from_slice(&word.to_le_bytes());
 }
 
-/// Returns sections that are missing, cut off, or for another version.
+/// Returns sections that are missing, truncated or for another version.
 fn missing_sections() -> Vec<DamagedSection> {
     let mut sections = vec![
         damage_section("erased flash", MISSING_ROBOT_NOTE, Vec::clear),
@@ -204,8 +203,8 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     assert_eq!(lines[1..], [damaged.expected_note]);
     // The firmware answers only questions, and refuses all other commands.
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
-    let other_words = Word::ALL.iter().filter(|word| !questions.contains(word));
-    let examples = other_words.map(|word| word.example().to_owned());
+    let refused_words = Word::ALL.iter().filter(|word| !questions.contains(word));
+    let examples = refused_words.map(|word| word.example().to_owned());
     for line in [
         first_moving_gait(),
         "stand".to_owned(),
@@ -222,11 +221,11 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     assert_eq!(answer, "ok help");
     assert!(notes.len() < 10, "{notes:?}");
     assert_eq!(bench.ask("watch 0"), (vec![], "ok watch 0".into()));
-    // Wait until after the time of `boot`.
+    // Waits until after the delay of `boot`.
     bench.run_ms(3_200);
     let (notes, status) = bench.ask("status");
     assert!(notes.is_empty(), "{notes:?}");
-    // The status has no pose, margin or voltage: without a robot, they would be meaningless.
+    // The status has no pose, margin or voltage, which would be meaningless without a robot.
     assert_eq!(
         status,
         "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0"
@@ -235,9 +234,12 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
         .lines()
         .iter()
         .filter(|line| line.text.starts_with("# fault:"));
-    assert_eq!(fault_lines.count(), 1, "the fault is reported once");
-    let other_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
-    assert_eq!(other_edge, None, "a pin besides the LED's");
+    assert_eq!(fault_lines.count(), 1, "reports of the fault");
+    let unexpected_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
+    assert_eq!(
+        unexpected_edge, None,
+        "a pin other than the LED's has changed"
+    );
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
     }
@@ -280,7 +282,7 @@ fn the_largest_section_is_checked_within_a_frame() {
             let section_bytes = robot.section().len();
             println!(
                 "{name}: {section_bytes} bytes in {:.1} ms",
-                call.cycles() as f64 / 16_000.0
+                call.cycles() as f64 / CYCLES_PER_MS as f64
             );
             assert!(call.cycles() < FRAME_CYCLES, "{name}: {call:?}");
         },

@@ -6,9 +6,9 @@ use simulated_uno::Fidelity;
 use crate::reference_run::ReferenceRun;
 use crate::run_in_both_simulations;
 
-/// Returns the number of bytes to send, and the cycles between two bytes, enough for the main loop to fall
-/// asleep. With the data sheet's corrections, the bytes cover every cycle of a frame, since the interval and the
-/// frame have no common factor. In stock simavr, they cover every fifth cycle, since the common factor is five.
+/// Returns the number of bytes to send, and the cycles between two bytes, which suffice for the main loop to fall
+/// asleep. In corrected simavr, the bytes cover every cycle of a frame, since the interval and the frame have no common
+/// factor. In stock simavr, they cover every fifth cycle, since the common factor is five.
 const fn byte_count_and_interval(fidelity: Fidelity) -> (u64, u64) {
     match fidelity {
         Fidelity::DataSheet => (FRAME_CYCLES, 3_001),
@@ -42,7 +42,7 @@ fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
             (run.late_edge_count(), run.read_word("serial::LOST")),
             (0, 0)
         );
-        let answers = (run.bench.lines().len() - line_count_before) as u64;
-        assert_eq!(answers, byte_count / line.len() as u64);
+        let answer_count = (run.bench.lines().len() - line_count_before) as u64;
+        assert_eq!(answer_count, byte_count / line.len() as u64);
     });
 }

@@ -1,8 +1,9 @@
-//! Tests of the faults that stop a motion: each has its own word in `status`, message and number of LED flashes.
+//! Tests of the faults that stop a motion: each has its own word in `status`, its own message and its own number of LED
+//! flashes.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
-use simulated_uno::Fidelity;
+use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::measurements::{count_flashes, measure_widths, recorded_pulses, run_for_pulses};
 use crate::reference_run::ReferenceRun;
@@ -11,7 +12,7 @@ use crate::{Status, boot_and_command, first_moving_gait};
 /// Checks the effects of a fault: nothing moves, `status` and exactly one line name the fault, and the LED flashes
 /// `flash_count` times between pauses.
 fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, flash_count: usize) {
-    let status = Status::of(bench);
+    let status = Status::read(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
     let held_widths = measure_widths(bench);
     for (pulses, width) in run_for_pulses(bench, 1000).iter().zip(held_widths) {
@@ -44,8 +45,8 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
         .lines()
         .iter()
         .find(|line| line.text.contains("deadman says"))
-        .map(|line| (line.cycle - start) / 16_000);
-    // 800 ms after the last line, which came after 1400 ms and the time of an answer; a line takes 5 ms.
+        .map(|line| (line.cycle - start) / CYCLES_PER_MS);
+    // 800 ms after the last line, which came at 1400 ms plus the time of an answer; a line takes 5 ms.
     assert!(
         stop_ms.is_some_and(|ms| (2_190..2_260).contains(&ms)),
         "{stop_ms:?}"
@@ -56,18 +57,18 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
         bench.say(&first_moving_gait()),
         format!("ok {}", first_moving_gait())
     );
-    assert_eq!(Status::of(&mut bench).text("fault"), "none");
+    assert_eq!(Status::read(&mut bench).text("fault"), "none");
 }
 
 #[test]
 fn deadman_is_off_unless_set_and_does_not_affect_a_standing_robot() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.run_ms(70_000);
-    assert_eq!(Status::of(&mut bench).text("fault"), "none");
+    assert_eq!(Status::read(&mut bench).text("fault"), "none");
     bench.say("stand");
     bench.say("deadman 100");
     bench.run_ms(5_000);
-    let status = Status::of(&mut bench);
+    let status = Status::read(&mut bench);
     assert_eq!(
         (status.text("gait"), status.text("fault")),
         ("stand", "none")
@@ -86,7 +87,7 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
     assert_eq!(starts, [rise + FRAME_CYCLES]);
     let message = "a pulse came late, stopped";
     assert_stopped(&mut run.bench, "late", message, 5);
-    assert_eq!(Status::of(&mut run.bench).number("late"), 1.0);
+    assert_eq!(Status::read(&mut run.bench).number("late"), 1.0);
 }
 
 #[test]

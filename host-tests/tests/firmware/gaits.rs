@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lizard_host::sim::analysis::servo_frames_of;
-use lizard_host_tests::robot;
+use lizard_host_tests::{CYCLES_PER_US, robot};
 use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
 
@@ -12,11 +12,11 @@ use crate::{FRAMES_PER_SECOND, boot_standing, for_each_in_parallel};
 /// Largest deviation of the gait tables from floating point that the project promises, deg.
 const MAX_TABLE_ERROR_DEG: f64 = 0.50;
 
-/// Returns the largest angle error by the rounding to cycles of 62.5 ns: half a cycle each for the width and for
-/// the neutral width.
+/// Returns the largest angle error due to the rounding to cycles of 62.5 ns, deg: half a cycle each for the width and
+/// for the neutral width.
 fn max_rounding_error_deg() -> f64 {
     let gains = robot().servos().map(|servo| servo.us_per_degree.abs());
-    1.0 / 16.0 / gains.into_iter().fold(f64::INFINITY, f64::min)
+    1.0 / CYCLES_PER_US / gains.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Number of frames in which a gait accelerates at its start.
@@ -84,7 +84,7 @@ fn find_gait_start(
     // The start comes after the move to the first pose, and at least a whole cycle before the end.
     let end = sent_angles.len() - (gait.period() * FRAMES_PER_SECOND as f64) as usize - 10;
     let start = (0..end).min_by(by_deviation);
-    start.expect("a second has frames")
+    start.expect("the recording is longer than a cycle")
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
             );
             // One frame earlier or later would exceed the bound, so the comparison can tell frames apart.
             if gait.has_movement() {
-                assert!(error > 0.0, "{}: tables are rounded", gait.name());
+                assert!(error > 0.0, "{}: no rounding error", gait.name());
                 // The first frame has no previous one.
                 let neighbours = [Some(start + 1), start.checked_sub(1)];
                 for neighbour in neighbours.into_iter().flatten() {
@@ -168,7 +168,7 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
             travel.turn / f64::from(gait_cycles),
         );
         println!("{name:<10} {measured_forward:7.2} mm {measured_turn:7.2} deg");
-        // An error of a tenth of a degree may decide which feet hold.
+        // An error of a tenth of a degree may decide which feet stick.
         let scale = robot().lizard().links.l10 / 135.0;
         let max_error = (0.3 * scale).max(forward.abs() * 0.02);
         assert!(

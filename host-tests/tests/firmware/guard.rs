@@ -32,7 +32,7 @@ fn max_margin_error(type2: f64) -> f64 {
     bands[0].max(bands[1])
 }
 
-/// Returns the limits, made stricter by the guard's tolerance (`sign` = 1) or less strict (`sign` = -1).
+/// Returns the robot's limits, made stricter by the guard's tolerance (`sign` = 1) or less strict (`sign` = -1).
 fn limits_with_tolerance(sign: f64) -> Limits {
     let limits = robot().limits();
     let (margin, stroke) = (max_margin_error(limits.type2), max_stroke_error());
@@ -113,7 +113,7 @@ fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
     });
 }
 
-/// Parses a refusal into the name of the broken condition, with its error code, and the value if the guard knows
+/// Parses a refusal into the name of the violated condition, with its error code, and the value if the guard knows
 /// one: `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1, ...`, `err 5 left
 /// slider is at 55.35 mm, ...`.
 fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
@@ -141,7 +141,7 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
             margins.type2[end]
         }
     };
-    // Where the couplers are nearly in line, a rounding step of a length turns them by a large angle.
+    // Where the couplers are nearly in line, an error of a length step turns them by a large angle.
     let tolerance_of_end = |end: usize| max_margin_error(margins.type2[end].max(0.05)) + 0.0005;
     let stroke_tolerance = max_stroke_error() + 0.005;
     let conditions = [
@@ -187,7 +187,7 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
 }
 
 #[test]
-fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
+fn a_refusal_names_the_violated_condition_and_its_value_if_the_guard_knows_it() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     let mut rng = Rng::with_seed(3);
     let (mut printed_count, mut unknown_count) = (0, 0);
@@ -201,8 +201,8 @@ fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
             Err(loop_error) => {
-                // A five-bar that does not close has no margins. But the guard checks the head first, so it may
-                // print the head's value although the tail does not close.
+                // A five-bar that does not close has no margins. But the guard checks the head first, so it may print
+                // the head's value although the tail does not close.
                 let head = robot().lizard().end(kinematics::End::Head);
                 let head = head.forward(angles[0], angles[1]);
                 match head {
@@ -241,7 +241,7 @@ fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
                 assert!(name.starts_with("4 type-2"), "{answer}");
                 assert!(
                     float_value.abs() < 0.1,
-                    "{angles:?}: {answer}, but it is {float_value}"
+                    "{angles:?}: {answer}, not {float_value}"
                 );
                 unknown_count += 1;
             }
@@ -252,7 +252,7 @@ fn a_refusal_names_the_broken_condition_and_its_value_if_the_guard_knows_it() {
 }
 
 #[test]
-fn no_frame_breaks_a_limit_under_random_commands() {
+fn no_frame_violates_a_limit_under_random_commands() {
     let cases = [
         (Fidelity::Stock, 21),
         (Fidelity::DataSheet, 22),
@@ -333,7 +333,7 @@ fn poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
             if let Some(kept_pose) = partner {
                 return Some([*kept_pose, pose]);
             }
-            // Keeps few poses, so that all pairs can be tried: a robot may have no unsafe path.
+            // Keeps few poses, so that all pairs can be tried: some robots have no unsafe path.
             if kept_poses.len() < 40 {
                 kept_poses.push(pose);
             }
@@ -351,8 +351,12 @@ fn assert_every_safe_pose_is_reached() {
         let pose = random_safe_pose(&mut rng);
         assert!(bench.say(&pose_line(pose)).starts_with("ok pose"));
         bench.run_ms(5000);
-        let status = Status::of(&mut bench);
-        assert_eq!(status.text("guard"), "clear", "the way to {pose:?}");
+        let status = Status::read(&mut bench);
+        assert_eq!(
+            status.text("guard"),
+            "clear",
+            "the guard holds the robot on its path to {pose:?}"
+        );
         for (actual, expected) in status.pose().into_iter().zip(pose) {
             assert!(
                 wrap(actual - expected).abs() <= 0.02,
@@ -363,7 +367,7 @@ fn assert_every_safe_pose_is_reached() {
 }
 
 #[test]
-fn the_robot_stops_on_an_unsafe_path_before_it_breaks_a_limit() {
+fn the_robot_stops_on_an_unsafe_path_before_it_violates_a_limit() {
     let Some([from, to]) = poses_with_unsafe_path() else {
         assert_every_safe_pose_is_reached();
         return;
@@ -375,7 +379,7 @@ fn the_robot_stops_on_an_unsafe_path_before_it_breaks_a_limit() {
         assert!(bench.say(&pose_line(to)).starts_with("ok pose"));
         let note = bench.next_line(5000).expect("the robot prints a note");
         assert!(note.starts_with("# held in the last safe pose: "), "{note}");
-        assert_eq!(Status::of(&mut bench).text("guard"), "held");
+        assert_eq!(Status::read(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(FRAMES_PER_SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
         let held_angles = servo_frames_of(robot(), &frames)[0]
@@ -386,6 +390,6 @@ fn the_robot_stops_on_an_unsafe_path_before_it_breaks_a_limit() {
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);
         assert_eq!(bench.run_for_frames(1)[0].widths(), neutral_widths());
-        assert_eq!(Status::of(&mut bench).text("guard"), "clear");
+        assert_eq!(Status::read(&mut bench).text("guard"), "clear");
     });
 }

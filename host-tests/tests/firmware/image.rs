@@ -112,7 +112,7 @@ fn tables_and_messages_stay_in_flash() {
     }
     assert!(
         ram_contains(b"# lizard"),
-        "the banner, which was just sent, is not in RAM"
+        "the banner is not in RAM, although it has just been sent"
     );
 }
 
@@ -133,7 +133,7 @@ fn no_interrupt_of_higher_priority_than_the_servos_is_used() {
         used_vectors,
         ["TIMER1_COMPA", "TIMER1_COMPB", "USART_RX", "USART_UDRE"]
     );
-    assert_eq!(Status::of(&mut bench).number("late"), 0.0);
+    assert_eq!(Status::read(&mut bench).number("late"), 0.0);
 }
 
 #[test]
@@ -145,8 +145,8 @@ fn an_image_that_does_not_fit_is_refused_with_the_excess_and_the_largest_functio
         .symbol("__code_end")
         .expect("the ELF has the symbol")
         .address;
-    // The script takes the bounds of the robot's section from two symbols. A moved symbol makes the code or the robot
-    // too large.
+    // The script takes the bounds of the robot's section from two symbols. A symbol with another address makes the code
+    // or the robot too large.
     let check_with_symbol = |symbol: &str, address: u64| {
         let status = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))

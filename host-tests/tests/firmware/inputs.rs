@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use lizard_host::board::SimulatedBoard;
 use lizard_host::sim::frame::Frame;
-use lizard_host_tests::{FirmwareBench, root};
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, root};
 use lizard_robot::{Robot, Travel};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
@@ -16,10 +16,10 @@ use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
 const BUTTON: Pin = Pin::a(1);
 const NOSE: Pin = Pin::a(2);
 
-/// The time for which a contact must be closed to be certain to count, ms.
+/// The shortest closing of a contact that is certain to count, ms: three frames.
 const DEBOUNCE_MS: u64 = 60;
 
-/// The largest allowed mean duration of a frame's computation, cycles.
+/// The largest allowed mean duration of the computation of a frame, cycles.
 const MAX_MEAN_FRAME_CYCLES: u64 = 5_000;
 
 /// Returns the paper's robot with the patrol of docs/gaits.md.
@@ -55,7 +55,7 @@ fn boot_with_inputs(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// Starts the patrol and returns a bench whose robot waits for the button.
+/// Starts the patrol and returns a bench whose robot is waiting for the button.
 fn start_waiting_patrol(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = boot_with_inputs(patrol_robot(), fidelity);
     assert_eq!(bench.say("patrol"), "ok patrol");
@@ -79,7 +79,7 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
     bench.uno.set_contact(pin, false);
 }
 
-/// Returns the notes (lines that begin with `#`) from line `first_line` on, without those of the start.
+/// Returns the notes (lines that begin with `#`) from line `first_line` on, except those of the banner.
 fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
     let lines = bench.lines()[first_line..]
         .iter()
@@ -91,18 +91,20 @@ fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
     lines.filter(is_note).collect()
 }
 
-/// Computes the travel for these pulses by the contact model.
+/// Predicts the travel for these pulses with the contact model.
 fn travel_of(frames: &[Frame]) -> Travel {
     let servos = patrol_robot().servos();
     let angles_of = |frame: &Frame| {
         let widths = frame.widths();
-        std::array::from_fn(|i| servos[i].neutral + servos[i].sweep(widths[i] as f64 / 16.0))
+        std::array::from_fn(|i| {
+            servos[i].neutral + servos[i].sweep(widths[i] as f64 / CYCLES_PER_US)
+        })
     };
     patrol_robot().predict_travel(frames.iter().map(angles_of))
 }
 
-/// True if the servos stand still for a second.
-fn is_still(bench: &mut FirmwareBench) -> bool {
+/// Runs the board for a second. Returns true if no pulse width changes.
+fn stays_still_for_a_second(bench: &mut FirmwareBench) -> bool {
     let frames = bench.run_for_frames(FRAMES_PER_SECOND);
     frames.iter().all(|frame| frame.widths == frames[0].widths)
 }
@@ -119,7 +121,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         bench.run_ms(10_000);
         let notes = read_notes(&mut bench, line_count);
         assert_eq!(notes, ["# boot: patrol", "# waiting for button"]);
-        assert!(is_still(&mut bench));
+        assert!(stays_still_for_a_second(&mut bench));
         // The button bounces.
         for ms in [1, 3, 1, 2, 7, 1, 2] {
             press(&mut bench, BUTTON, ms);
@@ -155,7 +157,7 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
                 "{travel:?}"
             );
         }
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         assert_eq!((status.text("gait"), status.text("late")), ("patrol", "0"));
     });
 }
@@ -167,16 +169,17 @@ fn a_stuck_button_or_too_short_a_press_starts_nothing() {
         bench.uno.set_contact(BUTTON, true);
         bench.say("patrol");
         bench.run_ms(5_000);
-        assert!(is_still(&mut bench));
+        assert!(stays_still_for_a_second(&mut bench));
         bench.uno.set_contact(BUTTON, false);
         bench.run_ms(DEBOUNCE_MS);
+        // Shorter than two frames, so the button is never seen closed in three frames.
         for ms in 1..39 {
             press(&mut bench, BUTTON, ms);
             bench.run_ms(41);
         }
-        assert!(is_still(&mut bench));
+        assert!(stays_still_for_a_second(&mut bench));
         press(&mut bench, BUTTON, DEBOUNCE_MS);
-        assert!(!is_still(&mut bench));
+        assert!(!stays_still_for_a_second(&mut bench));
     });
 }
 
@@ -237,10 +240,10 @@ fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
         }
         press(&mut bench, Pin::d(8), 100);
         bench.run_ms(2_000);
-        assert!(!is_still(&mut bench));
+        assert!(!stays_still_for_a_second(&mut bench));
         press(&mut bench, Pin::d(4), 100);
         bench.run_ms(10_000);
-        assert_eq!(Status::of(&mut bench).text("late"), "0");
+        assert_eq!(Status::read(&mut bench).text("late"), "0");
         let notes = read_notes(&mut bench, 0);
         let expected = ["button", "nose", "nose"].map(|name| format!("# waiting for {name}"));
         assert_eq!(notes, expected);

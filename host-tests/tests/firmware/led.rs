@@ -1,12 +1,11 @@
-//! Test of the LED on D13, which shows that the board is alive.
+//! Test of the LED on D13, whose slow blinking shows that the board is alive.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
-use simulated_uno::{Edge, Pin};
+use simulated_uno::Edge;
 
+use crate::measurements::LED;
 use crate::run_in_both_simulations;
-
-const LED: Pin = Pin::d(13);
 
 #[test]
 fn the_led_is_lit_at_power_on_and_changes_every_32_frames() {

@@ -1,17 +1,17 @@
 //! Tests of the firmware's ELF on a simulated UNO: its answers, its pulses, its contents and its costs.
 //!
-//! Every claim about pulses and the serial line is tested twice, on stock simavr
-//! and on simavr corrected by the data sheet. The two differ in interrupt latency
-//! and in the serial receiver, so a claim that holds in both depends on neither.
+//! Every claim about pulses and the serial line is tested twice, on stock simavr and on simavr corrected to follow the
+//! data sheet. The two differ in interrupt latency and in the serial receiver, so a claim that holds in both depends on
+//! neither.
 //!
-//! `make firmware` builds the ELF. If the ELF is older than the sources, it differs from the core that
-//! these tests contain, and they fail.
+//! `make firmware` builds the ELF. If the ELF is older than the sources, it differs from the core that these tests
+//! contain, and the tests fail.
 
 use std::collections::HashMap;
 use std::thread;
 
 use lizard_host::sim::tour;
-use lizard_host_tests::{FirmwareBench, Frame, robot};
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, Frame, robot};
 use lizard_robot::{CheckedGait, command_of};
 use simulated_uno::Fidelity;
 
@@ -52,9 +52,9 @@ mod watchdog;
 
 const FRAMES_PER_SECOND: u64 = 50;
 
-/// Removes from a line the values that the core on the host cannot know. The firmware writes a status in three
-/// parts, each in the frame in which the serial buffer has room for it, so the values of a moving robot depend on
-/// timing. Stock simavr measures voltages against a reference of 1.1 V, even if the robot's reference differs.
+/// Removes from a line the values that the core on the host cannot know. The firmware writes a status in three parts,
+/// each in the frame in which the serial buffer has room for it, so the values of a moving robot depend on timing.
+/// Stock simavr measures voltages against a reference of 1.1 V, even if the robot's reference differs.
 fn comparable_line(line: &str, fidelity: Fidelity) -> String {
     let mut unknown_keys = vec!["phase=", "pose=", "margin=", "frames="];
     if fidelity == Fidelity::Stock {
@@ -69,7 +69,7 @@ fn comparable_line(line: &str, fidelity: Fidelity) -> String {
         .join(" ")
 }
 
-/// Runs a test on stock simavr and on corrected simavr in parallel.
+/// Runs a test on stock simavr and on corrected simavr, in parallel.
 fn run_in_both_simulations(test: impl Fn(Fidelity) + Sync) {
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         test(*fidelity)
@@ -104,13 +104,13 @@ fn boot_standing(fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// Returns the command for the robot's first gait that moves. Every robot to be tested needs such a gait:
-/// without one, most of these tests would run on a robot that only stands.
+/// Returns the command for the robot's first gait that moves. Every robot under test needs such a gait: without one,
+/// most of these tests would run on a robot that only stands.
 fn first_moving_gait() -> String {
     let moving_gaits = tour::moving_gaits(robot());
     let first_gait = moving_gaits
         .first()
-        .expect("a robot to be tested has a gait that moves");
+        .expect("a robot under test has a gait that moves");
     command_of(first_gait)
 }
 
@@ -119,7 +119,7 @@ fn gait_commands() -> Vec<String> {
     robot().gaits().iter().map(CheckedGait::command).collect()
 }
 
-/// Returns the command for the pose at these angles from neutral.
+/// Returns the command for the pose at these angles from neutral, deg.
 fn pose_command(sweeps_deg: [f64; 4]) -> String {
     let servos = robot().servos();
     let angles: Vec<String> = (0..4)
@@ -137,7 +137,7 @@ fn pose_command(sweeps_deg: [f64; 4]) -> String {
 fn neutral_widths() -> [u64; 4] {
     robot()
         .servos()
-        .map(|servo| (servo.neutral_us * 16.0).round() as u64)
+        .map(|servo| (servo.neutral_us * CYCLES_PER_US).round() as u64)
 }
 
 /// Ends a flood of serial input and waits until the robot has answered the lines that are in its buffer.
@@ -154,12 +154,12 @@ fn widths(frames: &[Frame]) -> Vec<[u64; 4]> {
     frames.iter().map(Frame::widths).collect()
 }
 
-/// Values of an answer to `status`, by key.
+/// The values of an answer to `status`, by key.
 struct Status(HashMap<String, String>);
 
 impl Status {
     /// Asks the robot for its status.
-    fn of(bench: &mut FirmwareBench) -> Self {
+    fn read(bench: &mut FirmwareBench) -> Self {
         let answer = bench.say("status");
         let pairs = answer.strip_prefix("ok gait=").map(|_| &answer[3..]);
         let pairs = pairs.unwrap_or_else(|| panic!("no answer to status: {answer}"));

@@ -1,11 +1,12 @@
 //! Measurements at the servo pins, at the LED and on the console that several tests share.
 
-use lizard_host_tests::FirmwareBench;
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench};
 use simulated_uno::{CYCLES_PER_MS, Pin, Pulse};
 
 use crate::robot;
 
-const LED: Pin = Pin::d(13);
+/// The pin of the LED.
+pub const LED: Pin = Pin::d(13);
 
 /// Runs for `ms` milliseconds and returns the pulses of A1 to A4 in that time.
 pub fn run_for_pulses(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
@@ -55,7 +56,7 @@ pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
     lines.into_iter().filter(is_setting).collect()
 }
 
-/// Returns a servo's slew limit: the most by which its pulse width may change from frame to frame, cycles.
+/// Returns a servo's slew limit: the largest change of its pulse width from frame to frame, cycles.
 pub fn slew_limit(servo: usize) -> u64 {
     slew_limit_at(
         robot().servos()[servo].us_per_degree,
@@ -65,9 +66,9 @@ pub fn slew_limit(servo: usize) -> u64 {
 
 /// Returns the slew limit of a servo with `gain` us per degree at `slew` deg/s, cycles per frame.
 fn slew_limit_at(gain: f64, slew: f64) -> u64 {
-    // One cycle for the rounding of each of the two widths, and one for the rounding of the limit, which is half a
-    // step of an angle.
-    (slew / 50.0 * gain.abs() * 16.0) as u64 + 3
+    // The three cycles allow for rounding: one for each of the two widths, and one for the limit, whose rounding error
+    // is half a step of an angle.
+    (slew / 50.0 * gain.abs() * CYCLES_PER_US) as u64 + 3
 }
 
 /// Asserts that no pulse width of a gait differs from the previous one by more than the slew limits allow.
@@ -114,7 +115,7 @@ pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.run_ms(1000 * seconds);
     let edges = bench.uno.edges();
     let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED).collect();
-    // In a flash the LED is on for 160 ms and off for 160 ms; before a pause it stays off one second longer.
+    // In a flash the LED is on for 160 ms and off for 160 ms; in a pause it stays off for one second more.
     let mut flash_counts = Vec::new();
     let mut current_count = None;
     for pair in edges.windows(2) {
@@ -126,7 +127,7 @@ pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
                 flash_counts.extend(current_count);
                 current_count = Some(0);
             }
-            unexpected => panic!("the LED: {unexpected:?}"),
+            unexpected => panic!("unexpected LED phase, lit and ms: {unexpected:?}"),
         }
     }
     flash_counts

@@ -1,5 +1,5 @@
 //! Tests that no pulse is sent if its width does not fit into a slot, or once the firmware has cleared
-//! `pulses::ALLOWED_PINS`, which disallows pulses for good.
+//! `pulses::ALLOWED_PINS`, which disallows pulses permanently.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 
@@ -22,11 +22,11 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
         ];
         for width in widths {
             let start = run.run_to_next_frame();
-            // At this time, the frame's widths have been handed over and A3's slot is not yet planned.
+            // At this time, the frame's widths have been handed over, and A3's slot is not yet scheduled.
             run.run_to(start + 2_000);
             for (address, index) in a3_width_addresses
                 .into_iter()
-                .flat_map(|a| [(a, 0), (a + 1, 1)])
+                .flat_map(|address| [(address, 0), (address + 1, 1)])
             {
                 let byte_before = u16::from(run.bench.uno.peek(address));
                 let neutral_byte = (neutral_widths()[2] as u16).to_le_bytes()[index];
@@ -53,7 +53,7 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
 #[test]
 fn once_pulses_are_disallowed_the_current_one_ends_no_other_begins_and_the_ticks_go_on() {
     run_in_both_simulations(|fidelity| {
-        // Disallows pulses at 40 moments of a frame: before, in and after each pulse.
+        // Disallows pulses at 40 moments of a frame: before, during and after each pulse.
         for moment in 0..40 {
             let mut run = ReferenceRun::start_standing(fidelity);
             let start = run.run_to_next_frame();
@@ -61,7 +61,7 @@ fn once_pulses_are_disallowed_the_current_one_ends_no_other_begins_and_the_ticks
             let clear_cycle = run.bench.uno.cycle();
             let allowed_address = run.variable_address("pulses::ALLOWED_PINS");
             run.bench.uno.poke(allowed_address, 0);
-            let frames_before = Status::of(&mut run.bench).number("frames");
+            let frames_before = Status::read(&mut run.bench).number("frames");
             run.bench.run_ms(1000);
             for edge in crate::pulses::servo_edges(&run.bench) {
                 // One cycle of tolerance, for a store instruction that is already executing.
@@ -80,7 +80,7 @@ fn once_pulses_are_disallowed_the_current_one_ends_no_other_begins_and_the_ticks
                 }
                 assert!(!run.bench.uno.is_high(pin), "{moment}: {pin}");
             }
-            let ticks = Status::of(&mut run.bench).number("frames") - frames_before;
+            let ticks = Status::read(&mut run.bench).number("frames") - frames_before;
             assert!((50.0..=52.0).contains(&ticks), "{ticks} ticks in a second");
         }
     });

@@ -22,9 +22,9 @@ fn robot_count() -> u64 {
     value.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
 }
 
-/// Walks a gait for two seconds under a flood of serial input, and asserts that each frame has the widths
-/// that the core computes for it.
-fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, message: &str) {
+/// Runs a gait for two seconds during a flood of serial input, and asserts that each frame has the widths that the core
+/// computes for it.
+fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, robot_name: &str) {
     let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
     let mut bench = FirmwareBench::with_board(board.expect("`make firmware` has built the ELF"));
     bench.run_ms(1000);
@@ -47,7 +47,7 @@ fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, message: &str) {
         assert_eq!(
             frame.all_widths(),
             Some(expected),
-            "{message}, {flood:?}: {frame:?}"
+            "{robot_name}, {flood:?}: {frame:?}"
         );
     }
 }
@@ -64,11 +64,11 @@ fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
                 2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
                 _ => {}
             }
-            let message = format!("robot {number}");
+            let robot_name = format!("robot {number}");
             let gaits = tour::moving_gaits(&robot);
             for flood in FLOODS {
                 let gait = gaits[rng.usize(..gaits.len())];
-                assert_frames_exact(&robot, gait, flood, &message);
+                assert_frames_exact(&robot, gait, flood, &robot_name);
             }
         }
     });
@@ -76,7 +76,7 @@ fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
 
 #[test]
 fn the_longest_step_of_main_stays_within_its_bound_however_many_gaits_there_are() {
-    /// Cycles of the longest command, `factory`, not counting the search for a gait.
+    /// Upper bound of the cycles of `factory`, the longest command apart from the search for a gait.
     const MAX_OTHER_COMMAND_CYCLES: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
     let name_lengths = [10, 24, MAX_NAME_BYTES];

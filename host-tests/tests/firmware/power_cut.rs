@@ -1,5 +1,5 @@
-//! Tests of the saved settings after power cuts during a save, at every byte and with every torn value of that
-//! byte, and after bit flips in the EEPROM.
+//! Tests of the saved settings after power cuts during a save, at every byte and with every torn value of this byte,
+//! and after bit flips in the EEPROM.
 
 use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
@@ -26,7 +26,7 @@ fn load_settings(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
 struct UnsavedBoard {
     bench: FirmwareBench,
     saved_eeprom: [u8; EEPROM_SIZE],
-    /// The output of `cal` for the saved settings and for the changed ones.
+    /// The output of `cal` for the saved settings and for the changed settings.
     calibrations: [Vec<String>; 2],
 }
 
@@ -178,7 +178,7 @@ fn after_any_bit_flip_the_latest_or_the_previous_settings_are_loaded() {
         }
     }
     println!("{outcome_counts:?}: the latest settings, the previous ones, the defaults");
-    assert_eq!(outcome_counts[2], 0, "both copies are invalid");
+    assert_eq!(outcome_counts[2], 0, "a bit flip invalidates both copies");
     assert!(
         outcome_counts[1] >= 8 * 44,
         "too few bit flips damage the latest copy"

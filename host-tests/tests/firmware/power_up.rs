@@ -1,5 +1,5 @@
-//! Tests of the start: whatever values a boot loader or a crash has left in the registers, the pulses
-//! are those of a cold start.
+//! Tests of the start: whatever values a boot loader or a crash has left in the registers, the pulses are those of a
+//! cold start.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
@@ -7,7 +7,7 @@ use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Uno};
 use crate::pulses::servo_edges;
 use crate::run_in_both_simulations;
 
-/// Data addresses of registers, data sheet 30.
+/// Data addresses of registers, data sheet, section 30.
 const TCCR1A: u16 = 0x80;
 const TCCR1B: u16 = 0x81;
 const TCNT1: u16 = 0x84;
@@ -15,8 +15,7 @@ const OCR1A: u16 = 0x88;
 const SMCR: u16 = 0x53;
 const PORTS: [u16; 3] = [0x25, 0x28, 0x2b];
 
-/// Starts the board with these register values, sends `stand`, and returns the servos' edges of the first
-/// second.
+/// Starts the board with these register values, sends `stand`, and returns the servos' edges of the first second.
 fn record_edges_after(register_values: &[(u16, u8)], fidelity: Fidelity) -> Vec<Edge> {
     let mut bench = FirmwareBench::power_on(fidelity);
     for (register, value) in register_values {
@@ -45,8 +44,8 @@ fn a_timer_that_was_left_running_changes_no_edge() {
 
 #[test]
 fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
-    // The simulated timer restarts at every change of its mode, but the chip's timer continues to
-    // count. So the test reads the registers.
+    // The simulated timer restarts at every change of its mode, while the chip's timer continues to count. So the test
+    // reads the registers.
     run_in_both_simulations(|fidelity| {
         let mut bench = FirmwareBench::power_on(fidelity);
         for (register, value) in [(TCCR1B, 1), (TCNT1 + 1, 0x12), (TCNT1, 0x34)] {
@@ -54,8 +53,8 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
         }
         let word_at =
             |uno: &Uno, address| u16::from_le_bytes([uno.peek(address), uno.peek(address + 1)]);
-        let is_set = |uno: &Uno| word_at(uno, OCR1A) == 63_999;
-        assert!(bench.uno.run_until(100_000, 1, is_set));
+        let is_top_set = |uno: &Uno| word_at(uno, OCR1A) == 63_999;
+        assert!(bench.uno.run_until(100_000, 1, is_top_set));
         assert_eq!(
             bench.uno.peek(TCCR1B) & 7,
             0,
@@ -70,8 +69,8 @@ fn the_timer_stands_still_while_it_is_set_up_and_starts_at_zero() {
 
 #[test]
 fn main_sleeps_in_idle_mode() {
-    // The simulation has only one sleep mode, so the test reads the register. Idle is
-    // 000, data sheet 10.2; the last bit enables sleep.
+    // The simulation has only one sleep mode, so the test reads the register. Idle is 000, data sheet 10.2; the last
+    // bit enables sleep.
     let bench = FirmwareBench::boot();
     assert_eq!(bench.uno.peek(SMCR), 0b0001);
 }
@@ -82,9 +81,8 @@ fn pins_that_were_left_high_go_low_and_make_no_pulse() {
         let cold_edges = record_edges_after(&[], fidelity);
         let ports = PORTS.map(|port| (port, 0xff));
         let high_pin_edges = record_edges_after(&ports, fidelity);
-        // The pull-ups may raise pins before main begins, for far less than a servo's
-        // pulse. Then nothing drives the pins until the robot is known; the simulation
-        // keeps a pin's last level.
+        // The pull-ups may raise pins before main begins, for far less than a servo's pulse. Then nothing drives the
+        // pins until the robot is known; the simulation keeps a pin's last level.
         let first_cycle = cold_edges[0].cycle;
         let mut early_edges = high_pin_edges
             .iter()

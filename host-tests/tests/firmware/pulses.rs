@@ -17,8 +17,7 @@ pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     bench.uno.edges().into_iter().filter(is_of_servo).collect()
 }
 
-/// Asserts that each servo has one pulse in each frame, 20 ms apart to the cycle, and that one pin
-/// is high at a time.
+/// Asserts that each servo has one pulse in each frame, exactly 20 ms apart, and that only one pin is high at a time.
 fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {
         for (servo, start) in frame.starts.into_iter().enumerate() {
@@ -32,12 +31,12 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
         }
     }
     let edges = servo_edges(bench);
-    assert_eq!(edges.len(), 8 * frames.len(), "a pulse too many or too few");
+    assert_eq!(edges.len(), 8 * frames.len(), "too many or too few edges");
     assert_eq!(most_pins_high(&edges), 1);
 }
 
-/// Returns the cycle of A1's first pulse since power-on. The bench must still hold all edges, so call it before
-/// the bench runs for frames.
+/// Returns the cycle of A1's first pulse since power-on. The bench must still hold all edges, so this function must be
+/// called before the bench runs for frames.
 pub fn first_pulse_cycle(bench: &FirmwareBench) -> u64 {
     let edges = servo_edges(bench);
     edges.first().expect("the robot stands").cycle
@@ -68,8 +67,8 @@ pub fn commanded_widths(
 fn every_width_is_the_one_that_the_core_computes() {
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that
-            // the main loop may read it before or after the tick, a new bench sends it a millisecond later.
+            // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that the
+            // main loop may read it before or after the tick, a new bench sends the line a millisecond later.
             let boot_and_command_after = |delay_ms| {
                 let mut bench = boot_standing(*fidelity);
                 let first_rise = first_pulse_cycle(&bench);
@@ -133,8 +132,8 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
                 !can_vary || changes.count() as u64 > 2 * FRAMES_PER_SECOND,
                 "the widths do not vary"
             );
-            // Both directions are saturated: 11 520 bytes a second come in, and the answers fill the
-            // other direction, unless the flood is a single overlong line.
+            // Both directions are saturated: the robot receives 11 520 bytes a second, and its answers fill the other
+            // direction, unless the flood is a single overlong line.
             let seconds = frames.len() as f64 / FRAMES_PER_SECOND as f64;
             let received_rate =
                 (bench.uno.received_by_uno().len() - received_count) as f64 / seconds;
@@ -148,7 +147,7 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
                 "{flood:?}: {sent_rate} bytes a second back"
             );
             end_flood(&mut bench);
-            let status = Status::of(&mut bench);
+            let status = Status::read(&mut bench);
             assert_eq!(status.number("late"), 0.0, "{flood:?}");
             assert_eq!(bench.uno.overruns(), 0, "the receiver was not read in time");
         }
@@ -160,13 +159,13 @@ fn every_frame_is_counted_during_a_flood() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         bench.run_for_frames(0);
-        let (cycle, status_before) = (bench.uno.cycle(), Status::of(&mut bench));
+        let (cycle, status_before) = (bench.uno.cycle(), Status::read(&mut bench));
         bench.uno.flood(b"status\nhelp\n");
         bench.run_ms(20_000);
         end_flood(&mut bench);
         bench.run_for_frames(0);
         let passed_frames = (bench.uno.cycle() - cycle) / FRAME_CYCLES;
-        let status_after = Status::of(&mut bench);
+        let status_after = Status::read(&mut bench);
         assert_eq!(
             status_after.number("frames") - status_before.number("frames"),
             passed_frames as f64

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
-/// Returns a random number with at most two decimals, in the range from `min` to `max` extended by a fifth at each end.
+/// Returns a random number with at most two decimals, from the range `min` to `max` extended by a fifth at each end.
 fn random_number(rng: &mut Rng, min: f64, max: f64) -> String {
     let margin = (max - min) * 0.2;
     let number = min - margin + rng.f64() * (max - min + 2.0 * margin);
@@ -16,7 +16,7 @@ fn random_number(rng: &mut Rng, min: f64, max: f64) -> String {
     }
 }
 
-/// Returns a random angle near the neutral angle of a servo, deg.
+/// Returns a random angle near a servo's neutral angle, deg, as text.
 fn random_angle(rng: &mut Rng, servo: usize) -> String {
     let neutral = robot().servos()[servo].neutral;
     let max_deg = [5.0, 30.0, 100.0][rng.usize(..3)];

@@ -1,4 +1,5 @@
-//! A robot that walks or stands, and the pulse widths that it should send, for tests that disturb it at every cycle.
+//! A robot that walks or stands, and the pulse widths that it should send, for tests that disturb the robot at chosen
+//! cycles.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
@@ -7,7 +8,7 @@ use simulated_uno::Fidelity;
 use crate::pulses::{commanded_widths, first_pulse_cycle};
 use crate::{boot_standing, first_moving_gait};
 
-/// Cycles from one servo's pulse to the next one's.
+/// Cycles from the start of one servo's pulse to the start of the next servo's pulse.
 pub const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
 
 /// A robot that walks its first gait or stands. Its widths follow from the received bytes and the first pulse.
@@ -43,8 +44,8 @@ impl ReferenceRun {
         }
     }
 
-    /// Runs to just before the next frame's first pulse and returns the cycle of that pulse.
-    /// Discards the edges recorded so far.
+    /// Runs to just before the next frame's first pulse and returns the cycle of that pulse. Discards the edges
+    /// recorded so far.
     pub fn run_to_next_frame(&mut self) -> u64 {
         self.bench.run_for_frames(0);
         let cycles_since_pulse = self.bench.uno.cycle() - self.first_pulse_cycle;
@@ -76,7 +77,7 @@ impl ReferenceRun {
         )
     }
 
-    /// True if the simulation is the one corrected by the data sheet.
+    /// True if the simulation is simavr corrected to follow the data sheet.
     pub fn is_data_sheet_simulation(&self) -> bool {
         self.fidelity == Fidelity::DataSheet
     }

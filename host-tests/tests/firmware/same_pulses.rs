@@ -1,9 +1,9 @@
-//! Test that the pulses of every robot in robots/ are the recorded ones, cycle for cycle.
+//! Test that the pulses of every robot in robots/ equal the recorded pulses, cycle for cycle.
 //!
-//! The record of a robot is the number of edges of its servos' pins in ten simulated minutes of random
-//! commands, and a digest of these edges. A pulse that is one cycle longer or later, or on another pin,
-//! changes the digest. An intended change of a robot's values or of the effect of a command also changes
-//! it. In that case, replace the records with those that the failed test prints.
+//! The record of a robot is the number of edges of its servos' pins in ten simulated minutes of random commands, and a
+//! digest of these edges. A pulse that is one cycle longer or later, or on another pin, changes the digest. An intended
+//! change of a robot's values or of the effect of a command also changes the digest; then replace the records with
+//! those that the failed test prints.
 
 use lizard_host::firmware::read_with_robot;
 use lizard_host::sim::frame::{FRAME_CYCLES, servo_pins};
@@ -75,8 +75,8 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
     }
 }
 
-/// True if the robot fits into the flash beside the firmware. Without the project's own linker step, the code is
-/// larger, and some robots do not fit.
+/// True if the robot of this file name fits into the flash beside the firmware. Without the project's own linker step,
+/// the code is larger, and some robots do not fit.
 fn fits_beside_firmware(name: &str) -> bool {
     let is_plain_link = option_env!("LIZARD_PLAIN_LINK") == Some("1");
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
@@ -108,7 +108,7 @@ fn run_and_digest(name: &str) -> (u64, u64) {
         .cycle;
     println!(
         "{name}: the first pulse begins after {:.3} ms",
-        first_rise as f64 / 16_000.0
+        first_rise as f64 / CYCLES_PER_MS as f64
     );
     let mut random = Random(0x1234_5678_9abc_def1);
     let mut digest = 0xcbf2_9ce4_8422_2325u64;
@@ -119,8 +119,8 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     for frame in 0..frames {
         let start = first_rise + frame * FRAME_CYCLES;
         if frame == next_frame {
-            // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next
-            // line, so it is certain in which frame the robot obeys.
+            // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next line, so it
+            // is certain in which frame the robot obeys.
             uno.run_until_cycle(start + random.next_below(8) * CYCLES_PER_MS);
             uno.send(random_command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
@@ -158,11 +158,10 @@ fn run_and_digest(name: &str) -> (u64, u64) {
 
 #[test]
 fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
-    // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths:
-    // there are as many edges as on the last firmware that had each robot compiled into it
-    // (commit e49c5b5). The large robot is the paper's robot scaled by 4/3, so its servos get the
-    // same pulses. The robot with a grain was recorded when its file was added.
-    // Recorded again when `deadman` began to count only commands, which ends some gaits earlier.
+    // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths: there are as many edges
+    // as on the last firmware that had each robot compiled into it (commit e49c5b5). The large robot is the paper's
+    // robot scaled by 4/3, so its servos get the same pulses. The robot of grain.toml was recorded when its file was
+    // added. All were recorded again when `deadman` began to count only commands, which ends some gaits earlier.
     let recorded = [
         ("grain", (0xa932_205f_0ec5_bed7, 187_804)),
         ("large", (0x3a1b_1df5_bc67_f514, 184_384)),
@@ -181,7 +180,7 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
     assert_eq!(
         names,
         recorded.map(|(name, _)| name),
-        "one record for each file"
+        "the records are not those of the files"
     );
     for_each_in_parallel(&recorded, |(name, expected)| {
         if !fits_beside_firmware(name) {

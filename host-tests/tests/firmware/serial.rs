@@ -1,5 +1,5 @@
-//! Tests of the serial line: no byte is lost while the sender waits for answers,
-//! and the bytes that are lost in a flood are counted.
+//! Tests of the serial line: no byte is lost while the sender waits for answers, and the bytes that are lost in a flood
+//! are counted.
 
 use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
@@ -39,7 +39,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
             );
         }
         say_expecting_ok(&mut bench, "watch 0");
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         assert_eq!(
             (status.number("rx_lost"), status.number("late")),
             (0.0, 0.0)
@@ -49,7 +49,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
 }
 
 #[test]
-fn a_whole_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
+fn the_longest_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
     // Sends the longest line right after the question with the longest answer, without waiting.
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
@@ -67,7 +67,7 @@ fn a_whole_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
             .clone();
         assert_eq!(last_line, "ok stand");
         assert!(bench.lines().len() > line_count + 2);
-        assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
+        assert_eq!(Status::read(&mut bench).number("rx_lost"), 0.0);
     });
 }
 
@@ -80,8 +80,7 @@ fn a_long_answer_takes_less_than_2000_cycles_a_byte() {
         say_expecting_ok(&mut bench, "help");
         let bytes = &bench.bytes()[bytes_before..];
         let duration_cycles = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
-        // A byte takes 1360 cycles, in stock simavr 1496. Frames, and the time to compose each line,
-        // add to that.
+        // A byte takes 1360 cycles, in stock simavr 1496. Frames, and the time to compose each line, add to that.
         let cycles_per_byte = duration_cycles / bytes.len() as u64;
         assert!(
             bytes.len() > 200 && cycles_per_byte < 2_000,
@@ -100,13 +99,12 @@ fn bytes_lost_in_a_flood_are_counted() {
         end_flood(&mut bench);
         let received_count = (bench.uno.received_by_uno().len() - bytes_before) as f64;
         let answer_count = (bench.lines().len() - lines_before) as f64;
-        let lost_count = Status::of(&mut bench).number("rx_lost");
+        let lost_count = Status::read(&mut bench).number("rx_lost");
         println!(
             "{fidelity:?}: {received_count} received, {lost_count} lost, {answer_count} answers"
         );
         assert!(answer_count > 1000.0 && lost_count > received_count / 2.0);
-        // Each answer belongs to a line of at least two bytes, and lost bytes make lines only a
-        // little longer.
+        // Each answer belongs to a line of at least two bytes, and lost bytes make lines only a little longer.
         let read_count = received_count - lost_count;
         assert!(
             (2.0 * answer_count..4.0 * answer_count).contains(&read_count),
@@ -114,14 +112,14 @@ fn bytes_lost_in_a_flood_are_counted() {
         );
         // After a flood, the buffer contains none of its bytes.
         say_expecting_ok(&mut bench, &first_moving_gait());
-        assert_eq!(Status::of(&mut bench).number("rx_lost"), lost_count);
+        assert_eq!(Status::read(&mut bench).number("rx_lost"), lost_count);
     });
 }
 
 #[test]
 fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
-    // While the answer to `help` is being sent, the main loop reads nothing: 64 bytes fit into
-    // the buffer and the rest is lost.
+    // While the answer to `help` is being sent, the main loop reads nothing: 64 bytes fit into the buffer and the rest
+    // is lost.
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         bench.uno.send(b"help\n");
@@ -130,14 +128,14 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
         bench.run_ms(300);
         bench.uno.send(b"\n");
         bench.run_ms(100);
-        assert_eq!(Status::of(&mut bench).number("rx_lost"), 150.0 - 64.0);
+        assert_eq!(Status::read(&mut bench).number("rx_lost"), 150.0 - 64.0);
     });
 }
 
 #[test]
 fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
-    // The receiver has room for two bytes and the byte being received. The answer shows
-    // which of the five digits were not lost.
+    // The receiver has room for two bytes and the byte being received. The answer shows which of the five digits were
+    // not lost.
     let byte_cycles = 1_400;
     let mut bench = boot_standing(Fidelity::DataSheet);
     let (mut lost_before, mut overrun_count) = (0.0, 0);
@@ -160,7 +158,7 @@ fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
             .bytes()
             .all(|digit| sent_digits.any(|sent_digit| *sent_digit == digit));
         assert!(is_in_order, "{round}: {answer}");
-        let lost_count = Status::of(&mut bench).number("rx_lost");
+        let lost_count = Status::read(&mut bench).number("rx_lost");
         assert_eq!(
             lost_count > lost_before,
             was_lost,
@@ -194,7 +192,7 @@ fn a_line_of_any_bytes_gets_one_answer_unless_it_is_blank() {
         let is_blank = bytes.iter().all(|byte| *byte == b' ');
         assert_eq!(answer_count, usize::from(!is_blank), "{bytes:?}");
     }
-    assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
+    assert_eq!(Status::read(&mut bench).number("rx_lost"), 0.0);
 }
 
 #[test]
@@ -212,7 +210,7 @@ fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
             let refusal = "err 1 the line came garbled, send it again";
             assert_eq!(last_line.as_deref(), Some(refusal), "byte {index}");
         }
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         assert_eq!(
             (status.number("speed"), status.number("rx_lost")),
             (100.0, 8.0)

@@ -5,7 +5,7 @@ use simulated_uno::Fidelity;
 
 use crate::run_in_both_simulations;
 
-/// Registers of the USART, data sheet 20.11.
+/// Data addresses of the USART's registers, data sheet 20.11.
 const UCSR0A: u16 = 0xc0;
 const UCSR0C: u16 = 0xc2;
 const UBRR0: [u16; 2] = [0xc4, 0xc5];
@@ -24,6 +24,7 @@ fn the_baud_rate_differs_from_115_200_by_less_than_2_2_percent() {
     run_in_both_simulations(|fidelity| {
         let bench = FirmwareBench::boot_with(fidelity);
         let divisor = u16::from_le_bytes(UBRR0.map(|register| bench.uno.peek(register)));
+        // U2X0 halves the samples of a bit.
         let is_double_speed = bench.uno.peek(UCSR0A) & 2 != 0;
         let samples_per_bit = if is_double_speed { 8.0 } else { 16.0 };
         let baud = 16e6 / samples_per_bit / f64::from(divisor + 1);

@@ -1,5 +1,5 @@
-//! Tests that stop the main loop at every instruction that shares data with an interrupt: at the hand-over of a
-//! frame, at the LED, in an answer, and before the loop sleeps.
+//! Tests that stop the main loop at every instruction that shares data with an interrupt: in the hand-over of a frame,
+//! at the LED, in an answer, and before the loop sleeps.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
@@ -61,9 +61,9 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
         let mut next_index = 0;
         for (frame_index, (sent, _)) in frames.iter().enumerate() {
             let is_next = sent.all_widths() == commanded[next_index];
-            let is_old = next_index > 0 && sent.all_widths() == commanded[next_index - 1];
+            let is_repeated = next_index > 0 && sent.all_widths() == commanded[next_index - 1];
             assert!(
-                is_next || is_old,
+                is_next || is_repeated,
                 "stopped after {} cycles: {sent:?}",
                 frame_index / 3
             );
@@ -115,7 +115,7 @@ fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
 
 #[test]
 fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
-    // More than the time of two bytes, in which the USART sends everything that it holds.
+    // Longer than two bytes take, so the USART sends everything that it holds.
     const STOP_CYCLES: u64 = 3_000;
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
@@ -133,7 +133,7 @@ fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
                 "stopped after {delay_cycles} cycles"
             );
         }
-        assert_eq!(Status::of(&mut bench).number("rx_lost"), 0.0);
+        assert_eq!(Status::read(&mut bench).number("rx_lost"), 0.0);
     });
 }
 
@@ -167,7 +167,7 @@ fn ticks_that_main_misses_are_skipped_and_make_no_servo_leap() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
         run.run_to_next_frame();
-        let frames_before = Status::of(&mut run.bench).number("frames");
+        let frames_before = Status::read(&mut run.bench).number("frames");
         let start_cycle = run.bench.uno.cycle();
         run.bench.uno.take_edges();
         // Each stall is shorter than the watchdog's timeout.
@@ -178,7 +178,7 @@ fn ticks_that_main_misses_are_skipped_and_make_no_servo_leap() {
         let pulses = recorded_pulses(&run.bench);
         assert!(pulses.iter().all(|pulses| pulses.len() > 250));
         assert_no_leap_in_gait(&pulses);
-        let frames = Status::of(&mut run.bench).number("frames") - frames_before;
+        let frames = Status::read(&mut run.bench).number("frames") - frames_before;
         let passed_frames = (run.bench.uno.cycle() - start_cycle) as f64 / FRAME_CYCLES as f64;
         let missed_frames = passed_frames - frames;
         assert!(
@@ -206,14 +206,13 @@ fn old_widths_repeat_while_main_stands_still() {
 
 #[test]
 fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
-    // The watchdog has two stages of 125 ms each, and is fed at most one frame before a stall. Stalls shorter than the
-    // first limit never cause a reset, and stalls as long as the second limit always do.
+    // The watchdog has two stages of 125 ms each, and is fed at most one frame before a stall. A stall shorter than
+    // POSSIBLE_RESET_MS never causes a reset, and a stall of at least CERTAIN_RESET_MS always does.
     const POSSIBLE_RESET_MS: u64 = 105;
     const CERTAIN_RESET_MS: u64 = 250;
     for_each_in_parallel(&gait_commands(), |gait| {
         let mut bench = boot_and_command(gait, Fidelity::DataSheet);
-        // Short stalls are tried at more moments, because only short stalls end near the
-        // next tick.
+        // Short stalls are tried at more moments, because only short stalls end near the next tick.
         let lengths_ms = (0..6).flat_map(|_| 1..=25).chain(1..=300);
         for (stall_index, length_ms) in lengths_ms.enumerate() {
             // Spreads the stalls evenly over the frame, since 7 919 is a prime.

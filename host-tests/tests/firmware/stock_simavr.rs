@@ -1,5 +1,5 @@
-//! Tests with Debian's own `simavr`, which runs the unchanged ELF and HEX files: both start, and a robot
-//! with a gait set by `boot` walks after power-on.
+//! Tests with Debian's own `simavr`, which runs the unchanged ELF and HEX files: both start, and a robot with a gait
+//! set by `boot` walks after power-on.
 
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -8,23 +8,22 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use lizard_core::numbers::units::CYCLES_PER_US;
 use lizard_core::virtual_board::RunningRobot;
-use lizard_host_tests::{FirmwareBench, robot};
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
 
-/// Time after which simavr is stopped. It runs in real time or, on a busy machine, slower.
+/// Time after which simavr is stopped. simavr runs in real time or, on a busy machine, slower.
 const TIMEOUT: Duration = Duration::from_secs(200);
 
-/// Returns the gait that the robot walks: the first after `stand`.
-fn first_gait() -> String {
+/// Returns the command for the first gait after `stand`.
+fn first_gait_command() -> String {
     robot().gaits()[1].command()
 }
 
-/// Writes an EEPROM whose saved settings start the gait at power-on, as a HEX file.
+/// Writes a HEX file of an EEPROM whose saved settings start the first gait after power-on.
 fn write_eeprom(folder: &Path) {
     let mut running_robot = RunningRobot::power_on(*robot().firmware());
     running_robot.run_frames(50);
-    let boot_line = format!("boot {}", first_gait());
+    let boot_line = format!("boot {}", first_gait_command());
     assert_eq!(
         running_robot.send_line(&boot_line),
         format!("ok {boot_line}")
@@ -37,7 +36,7 @@ fn write_eeprom(folder: &Path) {
         "{output_text}"
     );
     let bytes = *running_robot.board.memory.bytes();
-    assert_eq!(bytes[0], 0xa5, "the first copy of the settings is whole");
+    assert_eq!(bytes[0], 0xa5, "the first copy of the settings is invalid");
     fs::write(folder.join("eeprom.bin"), bytes).expect("the folder is writable");
     objcopy(
         &[
@@ -63,8 +62,8 @@ fn objcopy(arguments: &[&str], folder: &Path) {
     assert!(status.expect("avr-objcopy runs").success(), "{arguments:?}");
 }
 
-/// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, so that
-/// it closes its files.
+/// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, so that simavr closes its
+/// files.
 fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
     let output_path = folder.join("output.txt");
     let file = File::create(&output_path).expect("the folder is writable");
@@ -90,11 +89,16 @@ fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> b
     read_output()
 }
 
-/// Returns tags, in the format of simavr's `avr_mcu_section.h`, that name a trace file and each pin to be traced.
+/// Tags of simavr's `avr_mcu_section.h`, each with the length of its data: the name of the trace file, and a traced
+/// pin.
+const VCD_FILENAME: [u8; 2] = [12, 64];
+const VCD_PORTPIN: [u8; 2] = [15, 35];
+
+/// Returns simavr's tags for a trace file and for each pin to be traced.
 fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
-    let mut name_tag = vec![12, 64];
+    let mut name_tag = VCD_FILENAME.to_vec();
     name_tag.extend(b"pins.vcd");
-    name_tag.resize(2 + 64, 0);
+    name_tag.resize(2 + usize::from(VCD_FILENAME[1]), 0);
     let mut tags = name_tag;
     for (servo, pin) in pins.into_iter().enumerate() {
         let (port, bit) = match pin {
@@ -102,9 +106,10 @@ fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
             8..14 => (b'B', pin - 8),
             _ => (b'C', pin - 14),
         };
-        let mut tag = vec![15, 35, port, bit, 0];
+        let mut tag = VCD_PORTPIN.to_vec();
+        tag.extend([port, bit, 0]);
         tag.extend(format!("A{}", servo + 1).bytes());
-        tag.resize(2 + 35, 0);
+        tag.resize(2 + usize::from(VCD_PORTPIN[1]), 0);
         tags.extend(tag);
     }
     tags
@@ -180,11 +185,11 @@ fn the_elf_file_walks_in_debians_simavr() {
             "eeprom.hex",
         ],
         folder,
-        // About 20 bytes for each edge, for the three seconds before the gait and for two of its cycles.
+        // 30 000 bytes, about 20 for each edge, cover the three seconds before the gait and two of its cycles.
         |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
     );
     assert!(
-        output_text.contains(&format!("# boot: {}", first_gait())),
+        output_text.contains(&format!("# boot: {}", first_gait_command())),
         "{output_text}"
     );
     assert!(
@@ -193,47 +198,51 @@ fn the_elf_file_walks_in_debians_simavr() {
     );
     let vcd = fs::read_to_string(folder.join("pins.vcd")).expect("simavr has written the trace");
     assert!(vcd.contains("$timescale 10ns $end"), "{}", &vcd[..80]);
-    let widths = parse_widths(&vcd);
+    let widths_us = parse_widths(&vcd);
     for (servo, calibration) in robot().firmware().calibration().iter().enumerate() {
-        let servo_widths = &widths[&format!("A{}", servo + 1)];
-        let [min_width, max_width] = [f64::min, f64::max].map(|pick| {
-            servo_widths
+        let servo_widths_us = &widths_us[&format!("A{}", servo + 1)];
+        let [min_us, max_us] = [f64::min, f64::max].map(|pick| {
+            servo_widths_us
                 .iter()
                 .copied()
                 .reduce(pick)
                 .expect("the servo has pulses")
         });
-        assert!(servo_widths.len() > 150, "{} pulses", servo_widths.len());
         assert!(
-            max_width - min_width > 50.0,
-            "A{} turns: {min_width} to {max_width} us",
+            servo_widths_us.len() > 150,
+            "{} pulses",
+            servo_widths_us.len()
+        );
+        assert!(
+            max_us - min_us > 50.0,
+            "A{} does not turn: {min_us} to {max_us} us",
             servo + 1
         );
         let limits = [calibration.travel_min, calibration.travel_max]
-            .map(|limit| f64::from(calibration.clamped_width(limit)) / f64::from(CYCLES_PER_US));
+            .map(|limit| f64::from(calibration.clamped_width(limit)) / CYCLES_PER_US);
         let (low_us, high_us) = (limits[0].min(limits[1]), limits[0].max(limits[1]));
         assert!(
-            low_us - 0.1 <= min_width && max_width <= high_us + 0.1,
-            "A{}: {min_width} to {max_width} us",
+            low_us - 0.1 <= min_us && max_us <= high_us + 0.1,
+            "A{}: {min_us} to {max_us} us",
             servo + 1
         );
     }
 }
 
-/// A HEX file cannot tell simavr the supply voltage, so simavr assumes 3.3 V. That is too little for
-/// servos, and the firmware must say so.
+/// A HEX file cannot tell simavr the supply voltage, so simavr assumes 3.3 V. This is too little for servos, and the
+/// firmware must say so.
 #[test]
 fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let folder = tempfile::tempdir().expect("the folder is writable");
     let folder = folder.path();
     let elf = FirmwareBench::elf();
-    fs::copy(elf.with_extension("hex"), folder.join("made.hex"))
+    fs::copy(elf.with_extension("hex"), folder.join("firmware.hex"))
         .expect("`make firmware` has built the firmware");
     let image = lizard_host::firmware::read_with_robot(&elf, robot())
         .expect("`make firmware` has built the firmware");
     let image = lizard_upload::Image::new(image.flash()).expect("the flash makes an image");
     fs::write(folder.join("image.hex"), image.to_hex()).expect("the folder is writable");
-    for file in ["made.hex", "image.hex"] {
+    for file in ["firmware.hex", "image.hex"] {
         let output_text = run_simavr(
             &["-m", "atmega328p", "-f", "16000000", file],
             folder,

@@ -1,9 +1,9 @@
-//! Tests of `stop`, `rest` and waking: the lines are sent at any moment, and the pulses checked frame by frame.
+//! Tests of `stop`, `rest` and waking: the lines are sent at many moments, and the pulses are checked frame by frame.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
-use lizard_host_tests::{FirmwareBench, robot};
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
 use lizard_robot::Servo;
-use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Fidelity};
+use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::{
     boot_and_command, boot_standing, first_moving_gait, for_each_in_parallel, gait_commands,
@@ -14,8 +14,8 @@ use crate::{
 /// phases of gait and frame.
 const INTERRUPTION_INTERVAL_CYCLES: u64 = 1_237_331;
 
-/// Runs `gait` for a second and `extra_cycles` more, sends a line, and returns the bench
-/// and the cycle at which the last byte of the line has arrived.
+/// Runs `gait` for a second and `extra_cycles` more, sends a line, and returns the bench and the cycle at which the
+/// last byte of the line has arrived.
 fn interrupt_gait(
     gait: &str,
     line: &str,
@@ -79,7 +79,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
             assert_eq!(pulses.len(), rise_count, "A{} is left high", servo + 1);
             for pulse in &pulses {
                 // Complete pulses, within the servo's travel.
-                let us = pulse.width as f64 / CYCLES_PER_US as f64;
+                let us = pulse.width as f64 / CYCLES_PER_US;
                 let Servo { min_us, max_us, .. } = robot().servos()[servo];
                 assert!(
                     min_us - 1.0 <= us && us <= max_us + 1.0,
@@ -158,7 +158,7 @@ fn sweeps_up_to(max_sweep_deg: f64) -> [f64; 4] {
 /// Returns the pulse width of a servo at a sweep from neutral, cycles.
 fn width_at(servo: usize, sweep_deg: f64) -> u64 {
     let servo = robot().servos()[servo];
-    (servo.pulse(servo.neutral + sweep_deg) * 16.0).round() as u64
+    (servo.pulse(servo.neutral + sweep_deg) * CYCLES_PER_US).round() as u64
 }
 
 #[test]
@@ -189,18 +189,18 @@ fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
         let sweep_of = |widths: [u64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| widths[i] as f64 - neutral_widths()[i] as f64)
         };
-        let whole_sweep = sweep_of(end_widths);
+        let full_sweep = sweep_of(end_widths);
         for widths in &sent_widths {
             let covered_sweep = sweep_of(*widths);
-            for (covered, whole) in covered_sweep.into_iter().zip(whole_sweep) {
-                let error = covered - covered_sweep[0] / whole_sweep[0] * whole;
+            for (covered, full) in covered_sweep.into_iter().zip(full_sweep) {
+                let error = covered - covered_sweep[0] / full_sweep[0] * full;
                 assert!(error.abs() <= 8.0, "{widths:?}");
             }
         }
         for pair in sent_widths.windows(2) {
             for (i, servo) in robot().servos().iter().enumerate() {
                 let max_step =
-                    robot().speed_limits().slew / 50.0 * 16.0 * servo.us_per_degree.abs();
+                    robot().speed_limits().slew / 50.0 * CYCLES_PER_US * servo.us_per_degree.abs();
                 let step = pair[0][i].abs_diff(pair[1][i]) as f64;
                 assert!(step <= max_step + 2.0, "A{} by {step} cycles", i + 1);
             }

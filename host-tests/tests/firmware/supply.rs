@@ -2,7 +2,7 @@
 
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Rail;
-use simulated_uno::{Fidelity, Pin};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
 use crate::measurements::{count_flashes, measure_widths, run_for_pulses};
 use crate::{Status, boot_and_command, boot_standing, first_moving_gait};
@@ -38,14 +38,14 @@ fn status_reports_the_supply_within_thirty_millivolts() {
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
         bench.run_ms(120);
-        let printed_volts = Status::of(&mut bench).number("vcc");
+        let printed_volts = Status::read(&mut bench).number("vcc");
         max_error = max_error.max((printed_volts - f64::from(mv) / 1000.0).abs());
     }
     assert!(max_error <= 0.030, "{max_error} V");
 }
 
-/// Lowers a supply through its three thresholds, V, and asserts that the robot reports its reaction at
-/// each threshold, and the voltage to within `tolerance`.
+/// Lowers a supply through its three thresholds, V, and asserts that the robot reports its reaction at each threshold,
+/// and the voltage to within `tolerance`, V.
 fn assert_reacts_at(
     bench: &mut FirmwareBench,
     thresholds: [f64; 3],
@@ -103,7 +103,7 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
             bench.uno.set_supply_mv(1000.0 * volts);
         },
     );
-    let status = Status::of(&mut bench);
+    let status = Status::read(&mut bench);
     assert_eq!(
         (status.text("gait"), status.text("fault")),
         ("rest", "supply")
@@ -120,9 +120,9 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
 fn a_low_supply_limits_the_pace_and_prevents_saving() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let measure_pace = |bench: &mut FirmwareBench| {
-        let phase_before = Status::of(bench).number("phase");
+        let phase_before = Status::read(bench).number("phase");
         bench.run_ms(200);
-        (Status::of(bench).number("phase") - phase_before).rem_euclid(1.0)
+        (Status::read(bench).number("phase") - phase_before).rem_euclid(1.0)
     };
     let full_pace = measure_pace(&mut bench);
     let [slow_volts, stop_volts, _] = robot().supplies().board;
@@ -156,7 +156,7 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
     let [slow_volts, stop_volts, _] = robot().supplies().board;
     bench.uno.set_supply_mv(stop_volts * 1000.0 - 60.0);
     bench.run_ms(500);
-    assert_eq!(Status::of(&mut bench).text("gait"), "stop");
+    assert_eq!(Status::read(&mut bench).text("gait"), "stop");
     let refusal = bench.say(&first_moving_gait());
     assert!(refusal.starts_with("err 8 "), "{refusal}");
     let held_widths = measure_widths(&mut bench);
@@ -180,7 +180,7 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
     );
     assert_eq!(measure_widths(&mut bench), held_widths, "a servo has moved");
     assert_eq!(
-        Status::of(&mut bench).text("fault"),
+        Status::read(&mut bench).text("fault"),
         "supply",
         "the fault ends before the robot moves"
     );
@@ -189,7 +189,7 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
         format!("ok {}", first_moving_gait())
     );
     bench.run_ms(500);
-    assert_eq!(Status::of(&mut bench).text("fault"), "none");
+    assert_eq!(Status::read(&mut bench).text("fault"), "none");
     assert_eq!(bench.say("save"), "ok save");
 }
 
@@ -200,7 +200,7 @@ fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
     // A servo that starts to move lowers the supply for some milliseconds.
     for n in 0..200u64 {
         bench.uno.set_supply_mv(3_300.0);
-        bench.uno.run_cycles(15 * 16_000 + n * 997);
+        bench.uno.run_cycles(15 * CYCLES_PER_MS + n * 997);
         bench.uno.set_supply_mv(5_000.0);
         bench.run_ms(100);
     }
@@ -217,21 +217,21 @@ fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
     assert_eq!(printed_notes.len(), 1, "{printed_notes:?}");
 }
 
-/// Sets the rail's pin to the voltage that the divider gives if the servos' rail has `volts`.
+/// Sets the rail's pin to the voltage behind the divider for a rail of `volts`.
 fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
     let mv = (1000.0 * volts / rail.ratio).round() as u16;
     bench.uno.set_analog_mv(Pin::arduino(rail.pin), mv);
 }
 
-/// Checks that a robot without a rail pin in robot.toml reports no rail, and that the voltage of a
-/// free pin has no effect.
+/// Checks that a robot without a rail pin in robot.toml reports no rail, and that the voltage of a free pin has no
+/// effect.
 fn assert_no_rail() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let servos = robot().servos().each_ref().map(|servo| servo.pin);
     let free_pins: Vec<u8> = (FIRST_ANALOG_PIN..FIRST_ANALOG_PIN + 6)
         .filter(|pin| !servos.contains(pin))
         .collect();
-    assert!(free_pins.len() >= 2, "six pins and four servos");
+    assert!(free_pins.len() >= 2, "{free_pins:?}");
     for mv in [0, 2_500, 5_000] {
         for pin in &free_pins {
             bench.uno.set_analog_mv(Pin::arduino(*pin), mv);
@@ -243,7 +243,7 @@ fn assert_no_rail() {
         assert!(read_supply_notes(&mut bench, 0).is_empty());
     }
     let gait = first_moving_gait().replace(' ', "-");
-    assert_eq!(Status::of(&mut bench).text("gait"), gait);
+    assert_eq!(Status::read(&mut bench).text("gait"), gait);
 }
 
 #[test]
@@ -257,7 +257,7 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
         let volts = max_volts * f64::from(step) / 41.0;
         set_rail(&mut bench, &rail, volts);
         bench.run_ms(120);
-        let printed_volts = Status::of(&mut bench).number("rail");
+        let printed_volts = Status::read(&mut bench).number("rail");
         let tolerance = rail_tolerance(&rail, volts);
         assert!(
             (printed_volts - volts).abs() <= tolerance,
@@ -266,8 +266,8 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
     }
 }
 
-/// Returns the largest error of a printed rail voltage, V: one converter step each for the
-/// rail and for the reference, and the rounding to two decimals.
+/// Returns the largest error of a printed rail voltage, V: one converter step each for the rail and for the reference,
+/// and the rounding to two decimals.
 fn rail_tolerance(rail: &Rail, volts: f64) -> f64 {
     0.01 + rail.ratio * 5.0 / 1024.0 + volts / 225.0
 }
@@ -283,5 +283,5 @@ fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
         set_rail(bench, &rail, volts);
     });
     assert!(run_for_pulses(&mut bench, 200).iter().all(Vec::is_empty));
-    assert!((Status::of(&mut bench).number("vcc") - 5.0).abs() <= MAX_BOARD_ERROR_V);
+    assert!((Status::read(&mut bench).number("vcc") - 5.0).abs() <= MAX_BOARD_ERROR_V);
 }

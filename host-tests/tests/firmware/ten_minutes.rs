@@ -32,8 +32,8 @@ fn script_of_all_lines(interval_ms: u64) -> Script {
         ]
         .map(str::to_owned),
     );
-    // The stride of 11 has no common factor with the number of lines, so every line is sent. The
-    // interval has no common factor with a frame's 20 ms, so the lines fall on every phase of a frame.
+    // The stride of 11 has no common factor with the number of lines, so every line is sent. The interval has no common
+    // factor with a frame's 20 ms, so the lines fall on every phase of a frame.
     let steps = (0..600_000 / interval_ms - 1)
         .map(|index| Step {
             ms: 1000 + index * interval_ms,
@@ -78,7 +78,7 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
             (recording, lines) = record_script(&script, fidelity);
             let undecided_count =
                 core_run::undecided_lines(&recording.received_by_uno, first_rise).count();
-            assert_eq!(undecided_count, 0, "lines that end at a tick");
+            assert_eq!(undecided_count, 0, "some lines still end at a tick");
         }
         assert_eq!(recording.state, State::Alive);
         let log = &recording.frames;
@@ -92,8 +92,8 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
         for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
             assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }
-        // Reports are not compared, since the frame that a report describes also depends on the cycle
-        // in which the serial buffer has room for it.
+        // Reports are not compared, since the frame that a report describes also depends on the cycle in which the
+        // serial buffer has room for it.
         let is_report = |line: &str| line.starts_with("# t=");
         let host_lines = commands.text.lines().filter(|line| !is_report(line));
         let host_lines: Vec<&str> = host_lines.collect();
@@ -107,20 +107,19 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
                 "{fidelity:?}, line {n}"
             );
         }
-        // At the end of the run, the UNO has not sent everything yet (255 bytes in the ring buffer,
-        // two in the transmitter, a part of a line), and the core on the host has not run since
-        // the last complete frame.
+        // At the end of the run, the UNO has not sent everything yet (255 bytes in the ring buffer, two in the
+        // transmitter, a part of a line), and the core on the host has not run since the last complete frame.
         let common_count = host_lines.len().min(lines.len());
         let byte_count_of = |line: &str| line.len() + 2;
-        let avr_counts = lines[common_count..].iter().map(|line| byte_count_of(line));
+        let avr_byte_counts = lines[common_count..].iter().map(|line| byte_count_of(line));
         let unmatched_bytes: usize = host_lines[common_count..]
             .iter()
             .map(|line| byte_count_of(line))
-            .chain(avr_counts)
+            .chain(avr_byte_counts)
             .sum();
         assert!(
             common_count > 400 && unmatched_bytes <= 257 + 192,
-            "{unmatched_bytes} bytes apart"
+            "{common_count} common lines, then {unmatched_bytes} bytes of one side only"
         );
         let answers = recording.answers.iter().flatten();
         assert_eq!(

@@ -1,5 +1,5 @@
-//! Tests of resets: a program that hangs restarts without a wrong pulse, and every cause of a reset is
-//! reported correctly.
+//! Tests of resets: a program that hangs restarts without a wrong pulse, and every cause of a reset is reported
+//! correctly.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, ResetCause};
@@ -11,12 +11,12 @@ use crate::{
     Status, boot_and_command, boot_standing, first_moving_gait, neutral_widths, pose_command,
 };
 
-/// Timer1's registers, by data address.
+/// Data addresses of Timer1's registers.
 const TCCR1B: u16 = 0x81;
 const TIMSK1: u16 = 0x6f;
 
-/// The longest time until the watchdog resets a program that hangs: two stages of 125 ms each, and the
-/// frame in which the watchdog was fed last.
+/// The longest time until the watchdog resets a program that hangs, ms: two stages of 125 ms each, and the frame in
+/// which the watchdog was fed last.
 const MAX_TIMEOUT_MS: u64 = 250 + 20;
 
 /// Moves the robot to a pose other than the neutral one, and returns its bench and the pulse widths of that pose.
@@ -74,18 +74,18 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
                 "no pulse for {gap:?} cycles"
             );
         }
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         assert_eq!(
             (status.text("reset"), status.text("fault")),
             ("watchdog", "watchdog")
         );
         assert_eq!(status.number("resets"), (round + 1) as f64);
     }
-    let is_printed = bench
+    let is_reported = bench
         .lines()
         .iter()
         .any(|line| line.text == "# fault: the program hung and began anew");
-    assert!(is_printed);
+    assert!(is_reported);
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
                 servo + 1
             );
         }
-        assert_eq!(Status::of(&mut bench).text("gait"), "stop");
+        assert_eq!(Status::read(&mut bench).text("gait"), "stop");
         let flashes = count_flashes(&mut bench, 12);
         assert!(
             flashes.len() >= 3 && flashes.iter().all(|count| *count == 4),
@@ -116,7 +116,7 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
         );
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(1500);
-        assert_eq!(Status::of(&mut bench).text("fault"), "none");
+        assert_eq!(Status::read(&mut bench).text("fault"), "none");
         assert_eq!(measure_widths(&mut bench), neutral_widths());
     }
 }
@@ -133,7 +133,7 @@ fn a_stopped_timer_or_disabled_interrupts_are_detected() {
         run_until_reset(&mut bench);
         bench.uno.run_ms(100);
         assert_eq!(measure_widths(&mut bench), widths, "{register:02x}={value}");
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         assert_eq!(status.text("reset"), "watchdog", "{register:02x}={value}");
     }
 }
@@ -151,7 +151,7 @@ fn disabled_interrupts_are_detected_and_reported_as_a_watchdog_reset() {
     bench.uno.block_interrupts(1_000 * CYCLES_PER_MS);
     run_until_reset(&mut bench);
     bench.uno.run_ms(100);
-    assert_eq!(Status::of(&mut bench).text("reset"), "watchdog");
+    assert_eq!(Status::read(&mut bench).text("reset"), "watchdog");
     assert_eq!(measure_widths(&mut bench), widths);
 }
 
@@ -164,7 +164,7 @@ fn a_robot_that_works_is_never_reset() {
 }
 
 /// Returns a board shortly after power-on, with or without a boot loader.
-fn boot_fresh_board(has_boot_loader: bool) -> FirmwareBench {
+fn boot_with_or_without_loader(has_boot_loader: bool) -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.uno.set_boot_loader(has_boot_loader);
     bench.run_ms(700);
@@ -174,10 +174,10 @@ fn boot_fresh_board(has_boot_loader: bool) -> FirmwareBench {
 #[test]
 fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
     for has_boot_loader in [false, true] {
-        let mut bench = boot_fresh_board(has_boot_loader);
+        let mut bench = boot_with_or_without_loader(has_boot_loader);
         let assert_reported = |bench: &mut FirmwareBench, cause: &str, resets: f64| {
             bench.uno.run_ms(700);
-            let status = Status::of(bench);
+            let status = Status::read(bench);
             let reported = (status.text("reset"), status.number("resets"));
             assert_eq!(reported, (cause, resets), "boot loader: {has_boot_loader}");
         };
@@ -190,8 +190,8 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.set_supply_mv(2_400.0);
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
-        // The boot loader clears the chip's record of the cause, and the RAM has kept its contents, so the
-        // firmware cannot distinguish the dip from an external reset.
+        // The boot loader clears the chip's record of the cause, and the RAM has kept its contents, so the firmware
+        // cannot distinguish the dip from an external reset.
         let dip_cause = if has_boot_loader {
             "external"
         } else {
@@ -224,13 +224,13 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
 
 #[test]
 fn resets_are_counted_up_to_255_and_no_further() {
-    let mut bench = boot_fresh_board(true);
+    let mut bench = boot_with_or_without_loader(true);
     for reset in 1..=260u32 {
         bench.uno.reset();
         bench.run_ms(5);
         if reset >= 253 {
             bench.run_ms(700);
-            let reported = Status::of(&mut bench).number("resets");
+            let reported = Status::read(&mut bench).number("resets");
             assert_eq!(reported, f64::from(reset.min(255)), "{reset} resets");
         }
     }
@@ -238,11 +238,11 @@ fn resets_are_counted_up_to_255_and_no_further() {
 
 #[test]
 fn power_on_is_recognised_whatever_noise_the_ram_holds() {
-    let mut bench = boot_fresh_board(true);
+    let mut bench = boot_with_or_without_loader(true);
     for seed in 0..300 {
         bench.uno.set_noise_seed(seed);
         power_cycle(&mut bench);
-        let status = Status::of(&mut bench);
+        let status = Status::read(&mut bench);
         assert_eq!(
             (status.text("reset"), status.number("resets")),
             ("power", 0.0)
@@ -275,7 +275,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
         }
         assert!(was_reset || ms < 130, "{ms} ms");
         let fault = if was_reset { "watchdog" } else { "none" };
-        assert_eq!(Status::of(&mut bench).text("fault"), fault, "{ms} ms");
+        assert_eq!(Status::read(&mut bench).text("fault"), fault, "{ms} ms");
         // The next iteration begins without a fault, in the same pose.
         bench.say(&pose_command([5.0, -4.0, 3.0, -2.0]));
         bench.run_ms(500);
@@ -300,7 +300,7 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
             assert!(bench.uno.watchdog_resets() > resets_before);
             let pulses = run_for_pulses(&mut bench, 6000);
             assert!(pulses.iter().all(Vec::is_empty), "{ms} ms: {pulses:?}");
-            let status = Status::of(&mut bench);
+            let status = Status::read(&mut bench);
             let reported = [status.text("gait"), status.text("fault")];
             assert_eq!(reported, ["rest", "watchdog"]);
             let answer = bench.say(&first_moving_gait());
@@ -323,16 +323,19 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     assert!(pulses.iter().all(Vec::is_empty), "{pulses:?}");
     bench.uno.run_ms(2_500);
     assert_eq!(measure_widths(&mut bench), neutral_widths());
-    let is_printed = bench
+    let is_reported = bench
         .lines()
         .iter()
         .any(|line| line.text == "# boot: stand");
-    assert!(is_printed);
+    assert!(is_reported);
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
     let pulses = run_for_pulses(&mut bench, 5_000);
-    assert!(pulses.iter().all(Vec::is_empty), "a byte cancels `boot`");
+    assert!(
+        pulses.iter().all(Vec::is_empty),
+        "a byte has not cancelled `boot`"
+    );
 }

@@ -1,5 +1,5 @@
-//! `make trouble`: runs many random fault-injection scenarios on the simulated UNO. The program prints its progress, the
-//! steps of the first scenarios that fail, and a summary by activity.
+//! `make trouble`: runs many random fault-injection scenarios on the simulated UNO. The program prints its progress,
+//! the steps of the first scenarios that fail, and a summary by activity.
 //!
 //! The environment variables SEED and COUNT select the scenarios. With ONLY, the program plays only the scenario with
 //! this number. `make` runs the program in the folder `crates`.
