@@ -19,7 +19,8 @@ const FILE_HEADER: &str = "\
 # Angles in degrees; trim and limit as the console has them, scale in us per degree.
 
 ";
-/// Largest difference between settings that count as equal: slightly less than half of 0.01, the last digit that the console prints.
+/// Largest difference between settings that count as equal: slightly less than half of 0.01, the last digit that the
+/// console prints.
 const TOLERANCE: f64 = 0.0049;
 
 /// The settings of a robot that `save` stores.
@@ -256,8 +257,8 @@ impl Calibration {
     }
 }
 
-/// A transfer of a calibration to a robot, line by line, in an order that the robot accepts. The transfer does not save the
-/// calibration.
+/// A transfer of a calibration to a robot, line by line, in an order that the robot accepts. The transfer does not save
+/// the calibration.
 ///
 /// The robot refuses a line after which a gait would leave the servos' travel. This may happen while the settings
 /// change one by one, even if the old and the new calibration are both valid. So refused lines are sent again after

@@ -398,8 +398,8 @@ impl Robot {
     }
 
     /// Predicts the movement of the body while the servos go through these angles (deg, chassis frame, servo order), by
-    /// the contact model with rigid legs. Returns a result even if it depends on differences between the pads that cannot
-    /// be measured.
+    /// the contact model with rigid legs. Returns a result even if it depends on differences between the pads that
+    /// cannot be measured.
     pub fn predict_travel(&self, angles: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         self.ground()
             .with_rigid_drive()

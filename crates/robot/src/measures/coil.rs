@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 /// Shear modulus of spring steel, N/mm^2.
 const SHEAR_MODULUS: f64 = 79_300.0;
 
-/// A tension spring, described by the dimensions that a shop gives.
+/// A tension spring, described by the dimensions that shops state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coil {
     /// Diameter of the wire, mm.
@@ -17,10 +17,10 @@ pub struct Coil {
 }
 
 impl Coil {
-    /// Makes a spring of the size in the paper's robot, with a wire of this diameter, mm.
-    pub const fn with_papers_size(wire: f64) -> Self {
+    /// Returns a spring of the size in the paper's robot, with a wire of this diameter, mm.
+    pub const fn with_papers_size(wire_diameter: f64) -> Self {
         Self {
-            wire_diameter: wire,
+            wire_diameter,
             outer_diameter: 5.55,
             free_length: 25.4,
         }
@@ -46,8 +46,8 @@ impl Coil {
     }
 
     /// Initial tension: the force that opens the coils, N. The wire keeps a shear stress from the winding, which falls
-    /// with C, the ratio of the coil's mean diameter to the wire's diameter. Makers reach 231 / e^(0.105 C) MPa, plus or
-    /// minus 6.9 (4 - (C - 3) / 6.5) MPa.
+    /// with C, the ratio of the coil's mean diameter to the wire's diameter. Makers reach 231 / e^(0.105 C) MPa, plus
+    /// or minus 6.9 (4 - (C - 3) / 6.5) MPa.
     pub fn initial_tension(&self) -> f64 {
         let ratio = self.mean_diameter() / self.wire_diameter;
         self.force_at_stress(231.0 * (-0.105 * ratio).exp())

@@ -1,13 +1,14 @@
-//! The consequences of a broken condition for the robot, in plain words, without keys of robot.toml and without numbers.
+//! The consequences of a violated condition for the robot, in plain words, without keys of robot.toml and without
+//! numbers.
 
 use lizard_kinematics::{Check, End, Part, Side};
 
-/// Names of the legs in servo order.
-const LEG_NAMES: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
+/// The legs in servo order, as a message names them.
+const SPOKEN_LEG_NAMES: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
 
-/// Returns the consequence for the robot of a pose that breaks a condition.
+/// Returns the consequence for the robot of a pose that violates a condition.
 pub(crate) fn consequence(check: Check) -> String {
-    let index_in = |checks: &[Check]| checks.iter().position(|known| *known == check);
+    let index_in = |checks: &[Check]| checks.iter().position(|listed| *listed == check);
     if let Some(end) = index_in(&Check::TYPE2) {
         return format!("nothing would hold the {}", End::ALL[end]);
     }
@@ -21,7 +22,7 @@ pub(crate) fn consequence(check: Check) -> String {
         return format!("the {side_name} elbow of the {end} could flip over");
     }
     if let Some(leg) = index_in(&Check::LEG) {
-        return format!("the {} leg would lock", LEG_NAMES[leg]);
+        return format!("the {} leg would lock", SPOKEN_LEG_NAMES[leg]);
     }
     if let Some(side) = index_in(&Check::STROKE) {
         return format!("the {} slider would run into its end", Side::ALL[side]);
@@ -43,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_consequence_of_a_broken_condition_names_the_affected_part() {
+    fn the_consequence_of_a_violated_condition_names_the_affected_part() {
         for (check, expected) in [
             (Check::Type2Tail, "nothing would hold the tail"),
             (Check::Type1A1, "the left elbow of the head could flip over"),

@@ -7,7 +7,9 @@ use crate::measures::legs::LegPlan;
 use crate::measures::parts::Parts;
 use crate::measures::strut;
 
+/// The key of the table in `[leg]`.
 const TABLE: &str = "drive";
+/// The keys of all kinds of drive.
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
 /// The kinds of drive, each with the keys that it has in addition to `kind` and `play`.
 const KINDS: [(&str, &[&str]); 2] = [

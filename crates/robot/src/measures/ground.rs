@@ -25,8 +25,8 @@ pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> Checked<Ground> 
     })
 }
 
-/// Reads the mass and the mass centre; a key that is left out has its default value. Refuses a mass centre that lifts
-/// a foot off the floor at neutral.
+/// Reads the mass and the mass centre; a key that is left out has its default value. Refuses a mass centre with which
+/// a foot would leave the floor in the neutral pose.
 fn read_body(root: &Section, feet: &Feet) -> Checked<Body> {
     if !root.has_key("body") {
         return Ok(Body::DEFAULT);

@@ -19,9 +19,10 @@ const DEFAULT_FOOT: [f64; 2] = [-3.5, 2.5];
 const HIP_FORWARD_RANGE: (f64, f64) = (1.0, 500.0);
 /// Range of the hips' distance to the side of the chassis centre, mm.
 const HIP_SIDE_RANGE: (f64, f64) = (0.0, 500.0);
-/// Largest difference of two lengths that count as equal, mm.
+/// Largest difference between two lengths that count as equal, mm.
 const LENGTH_TOLERANCE_MM: f64 = 0.005;
 
+/// The keys of the two distances in `[leg]`.
 const FORWARD_KEY: &str = "hip_forward";
 const SIDE_KEY: &str = "hip_side";
 
@@ -99,15 +100,16 @@ mod tests {
     use crate::Robot;
     use crate::testing::robot_with;
 
-    const LEG: &str = "[leg] ";
+    /// The header of the table `[leg]`.
+    const LEG_HEADER: &str = "[leg] ";
 
     /// Reads the paper's robot with these lines in `[leg]` and in `[parts]`.
     fn robot(hip_lines: &str, part_lines: &str) -> Result<Robot, String> {
         let leg = format!("[parts]\n{part_lines}\n[leg]\n{hip_lines}\n#");
-        robot_with("paper", &[(LEG, &leg)]).map_err(|error| error.to_string())
+        robot_with("paper", &[(LEG_HEADER, &leg)]).map_err(|error| error.to_string())
     }
 
-    /// Returns the distances of the paper's hips with these lines, mm: ahead, and to the side at head and tail.
+    /// Returns the hips' distances in the paper's robot with these lines, mm: ahead, and to the side at head and tail.
     fn hips_of(hip_lines: &str, part_lines: &str) -> (f64, [f64; 2]) {
         let feet = robot(hip_lines, part_lines)
             .expect("the robot is valid")
@@ -137,9 +139,9 @@ mod tests {
             let leg = robot.legs()[1];
             leg.coupler_direction * leg.foot.x + leg.coupler_direction.rotated_left() * leg.foot.y
         };
-        let moved_robot =
+        let shifted_robot =
             robot("hip_forward = 57.0\nhip_side = 36.0", "").expect("the robot is valid");
-        let error = foot_offset(&moved_robot) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
+        let error = foot_offset(&shifted_robot) - Vector::new(36.0 - 38.5, 57.0 - 57.5);
         assert!(error.length() < 1e-9, "{error:?}");
         let same_robot =
             robot("hip_forward = 55.0\nhip_side = 35.0", "").expect("the robot is valid");

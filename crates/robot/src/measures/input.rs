@@ -41,7 +41,7 @@ impl Inputs {
             }
             let table = section.section(name, &["pin"])?;
             let pin = read_pin(&table)?;
-            if let Some((_, owner)) = used_pins.iter().find(|(other, _)| *other == pin) {
+            if let Some((_, owner)) = used_pins.iter().find(|(used_pin, _)| *used_pin == pin) {
                 let message = format!("is \"{}\", which {owner} already has", table.text("pin")?);
                 return Err(table.error("pin", message));
             }

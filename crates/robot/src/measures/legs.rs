@@ -3,8 +3,8 @@
 //!
 //! The paper's figures do not show the legs' pivots. Only the circle of the foot matters for
 //! walking, and a parallelogram moves its coupler without turning it. So both pivots may be
-//! moved together to a place with room, if the foot is moved on the coupler by the same
-//! distance in the opposite direction. The pivot of the driven crank lies outside the area that
+//! shifted together to a place with enough room, if the foot is shifted on the coupler by the
+//! same distance in the opposite direction. The pivot of the driven crank lies outside the area that
 //! the servo's link sweeps. The strut joins the servo's link to the leg. It is the coupler of a
 //! second parallelogram, whose ground link goes from the servo's shaft to the crank's pivot, and
 //! whose cranks are two equal arms that carry the strut's anchors.
@@ -106,8 +106,8 @@ impl LegPlan {
         }
     }
 
-    /// Places the leg for the servo's angle and the angle that the leg follows, both
-    /// in deg, chassis frame. The angles differ by the leg's lag.
+    /// Computes the points of the leg at the servo's angle and at the angle that the leg has
+    /// reached, both in deg, chassis frame. The angles differ by the leg's lag.
     pub fn place_at(&self, servo_angle: f64, leg_angle: f64) -> LegPlace {
         let rotate = |angle: f64, vector: Vector| {
             let x = Vector::direction(angle);
@@ -134,7 +134,8 @@ fn crank_pivot_offset(servo: usize, parts: &Parts) -> Vector {
     chassis_offset(servo, parts.pivot)
 }
 
-/// Converts an offset from a servo, given as the distances outward and towards the robot's middle, to the chassis frame.
+/// Converts an offset from a servo, given as the distances outward and towards the robot's middle, to the chassis
+/// frame.
 pub(crate) fn chassis_offset(servo: usize, [outward, inward]: [f64; 2]) -> Vector {
     Vector::new(-LEFT_SIGN[servo] * outward, -FRONT_SIGN[servo] * inward)
 }
@@ -149,7 +150,7 @@ mod tests {
     #[test]
     fn a_crank_has_its_length_and_its_servos_angle_to_the_ground_link() {
         for (name, robot) in all_robots() {
-            let bars = robot.lizard().leg;
+            let leg_links = robot.lizard().leg;
             for (servo, settings) in robot.servos().iter().enumerate() {
                 for angle in [
                     settings.neutral - 30.0,
@@ -163,8 +164,11 @@ mod tests {
                     // A ground link may have either of two opposite directions.
                     let angle_error = wrap(2.0 * (crank.angle() - ground.angle() - angle));
                     assert!(angle_error.abs() < 1e-9, "{name} {servo} {angle_error}");
-                    assert!((crank.length() - bars.crank).abs() < 1e-9, "{name} {servo}");
-                    assert!((ground.length() - bars.ground).abs() < 1e-9);
+                    assert!(
+                        (crank.length() - leg_links.crank).abs() < 1e-9,
+                        "{name} {servo}"
+                    );
+                    assert!((ground.length() - leg_links.ground).abs() < 1e-9);
                     assert!((coupler - ground).length() < 1e-9, "the coupler is turned");
                 }
             }
@@ -172,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_is_where_the_contact_model_has_it() {
+    fn a_foot_has_the_position_that_it_has_in_the_contact_model() {
         for (name, robot) in all_robots() {
             for sweep in [-25.0, 0.0, 17.0] {
                 let feet = robot.ground().feet.positions([sweep; 4]);
@@ -212,8 +216,8 @@ mod tests {
         for (name, robot) in all_robots() {
             for (servo, leg) in robot.legs().iter().enumerate() {
                 let length_at = |angle: f64, lag: f64| {
-                    let [from, to] = leg.place_at(angle, angle - lag).strut_anchors;
-                    (to - from).length()
+                    let [servo_anchor, leg_anchor] = leg.place_at(angle, angle - lag).strut_anchors;
+                    (leg_anchor - servo_anchor).length()
                 };
                 let neutral = robot.servos()[servo].neutral;
                 for angle in [neutral - 30.0, neutral, neutral + 30.0] {

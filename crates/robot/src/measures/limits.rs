@@ -3,7 +3,7 @@
 use lizard_kinematics::Limits;
 
 use crate::file::{Checked, Section};
-use crate::measures::scale::LONGEST_BAR;
+use crate::measures::scale::MAX_LINK_LENGTH_MM;
 use crate::measures::servo::SpeedLimits;
 
 /// The lowest speed limit allowed, deg/s: a slower move would overflow the firmware's count of frames.
@@ -28,8 +28,8 @@ pub(crate) fn read(root: &Section) -> Checked<(Limits, SpeedLimits)> {
         type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
         type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
         leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
-        stroke_min: section.number("stroke_min", -LONGEST_BAR, LONGEST_BAR, "mm")?,
-        stroke_max: section.number("stroke_max", -LONGEST_BAR, LONGEST_BAR, "mm")?,
+        stroke_min: section.number("stroke_min", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
+        stroke_max: section.number("stroke_max", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
     };
     section.require_less(
         "stroke_min",

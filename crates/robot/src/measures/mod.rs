@@ -1,8 +1,8 @@
 //! The robot's dimensions and parameters in robot.toml, each with its range.
 //!
 //! A wrong number could break the robot: the loop of its links would not close, a servo would press against its stop,
-//! or the chassis would fall over. So every number has its range, the lengths must fit the core's integers, and the
-//! neutral pose must be safe. [`Measures`] holds the checked values: linkage, servos, legs, parts, supplies and the
+//! or the chassis would fall over. So every number has its range, the lengths must fit into the core's integers, and
+//! the neutral pose must be safe. [`Measures`] holds the checked values: linkage, servos, legs, parts, supplies and the
 //! ground of the contact model.
 
 mod coil;
@@ -40,10 +40,10 @@ use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::file::{Checked, Section, UnlocatedError};
 use hips::Hips;
-use scale::LONGEST_BAR;
+use scale::MAX_LINK_LENGTH_MM;
 
 /// Range of a link's length, mm.
-const LENGTH_RANGE_MM: (f64, f64) = (1.0, LONGEST_BAR);
+const LENGTH_RANGE_MM: (f64, f64) = (1.0, MAX_LINK_LENGTH_MM);
 
 /// The table that replaces the former keys `spring` and `preload` of `[leg]`, for the message about these keys.
 const SPRING_REPLACEMENT: &str =
@@ -58,18 +58,23 @@ const LINK_NAMES: [&str; 20] = [
 /// The contents of robot.toml except gaits and routines.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Measures {
+    /// The lengths of all links.
     pub lizard: Lizard,
     /// The servos A1, A2, A3, A4.
     pub servos: [Servo; 4],
+    /// The type of all four servos.
     pub servo_type: ServoType,
     /// Friction of the joints.
     pub joints: Joints,
     /// Limits of margins and strokes.
     pub limits: Limits,
     pub speed_limits: SpeedLimits,
+    /// The parameters of the contact model.
     pub ground: Ground,
+    /// The supplies of board and servos.
     pub supplies: Supplies,
     pub inputs: Inputs,
+    /// The dimensions of the parts to print and to buy.
     pub parts: Parts,
     /// The legs in servo order.
     pub legs: [LegPlan; 4],
@@ -114,19 +119,19 @@ impl Measures {
         self.servos.map(|servo| servo.neutral)
     }
 
-    /// Refuses couplers that the firmware's 16-bit integers cannot resolve because the rest of their loop is much longer,
-    /// and strokes that leave a slider no length.
+    /// Refuses couplers that the firmware's 16-bit integers cannot resolve because the rest of their loop is much
+    /// longer, and strokes that leave a slider no length.
     fn check_lengths(&self) -> Checked<()> {
         for (end, names) in [
             (End::Head, ["links.l2", "links.l3"]),
             (End::Tail, ["links.l7", "links.l8"]),
         ] {
-            let bars = self.lizard.end(end);
-            let per_mm = scale::steps_per_mm(scale::five_bar_scale(&bars));
+            let five_bar = self.lizard.end(end);
+            let per_mm = scale::steps_per_mm(scale::five_bar_scale(&five_bar));
             let min_mm = f64::from(MIN_COUPLER_STEPS) / per_mm;
             for (key, value) in names
                 .into_iter()
-                .zip([bars.left_coupler_length, bars.right_coupler_length])
+                .zip([five_bar.left_coupler_length, five_bar.right_coupler_length])
             {
                 if value < min_mm {
                     // Rounded up, so that the length in the message is sufficient.
@@ -144,7 +149,7 @@ impl Measures {
             ("limits.stroke_min", self.limits.stroke_min),
             ("limits.stroke_max", self.limits.stroke_max),
         ] {
-            let (min, max) = (-min_nominal_length, LONGEST_BAR);
+            let (min, max) = (-min_nominal_length, MAX_LINK_LENGTH_MM);
             if !(min..=max).contains(&value) {
                 let unit = "mm, so that the slider keeps a length";
                 return Err(UnlocatedError::out_of_range(
@@ -158,11 +163,11 @@ impl Measures {
         Ok(())
     }
 
-    /// Refuses a robot whose neutral pose breaks a limit.
+    /// Refuses a robot whose neutral pose violates a limit.
     fn check_neutral(&self) -> Checked<()> {
         let refuse = |consequence: String, problem: String| {
-            let meaning = format!("in the neutral pose {consequence}");
-            Err(UnlocatedError::clause("servo", problem).with_consequence(meaning))
+            let consequence = format!("in the neutral pose {consequence}");
+            Err(UnlocatedError::clause("servo", problem).with_consequence(consequence))
         };
         match self.lizard.solve(&self.neutral_angles().into()) {
             Err(infeasible) => refuse(
@@ -210,12 +215,12 @@ fn read_leg(root: &Section) -> Checked<(Leg, Hips, f64)> {
     let section = root.open("leg")?;
     section.refuse_former_keys(&["spring", "preload"], SPRING_REPLACEMENT)?;
     let section = section.require_known_keys(&keys)?;
-    let read_bar = |name| section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm");
+    let read_length = |name| section.number(name, LENGTH_RANGE_MM.0, LENGTH_RANGE_MM.1, "mm");
     let leg = Leg {
-        ground: read_bar("ground")?,
-        crank: read_bar("crank")?,
-        coupler: read_bar("coupler")?,
-        follower: read_bar("follower")?,
+        ground: read_length("ground")?,
+        crank: read_length("crank")?,
+        coupler: read_length("coupler")?,
+        follower: read_length("follower")?,
     };
     let parallelogram_reason = "a leg is a parallelogram, so its opposite links are equally long";
     require_equal(

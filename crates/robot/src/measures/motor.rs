@@ -10,7 +10,7 @@ use lizard_kinematics::Lizard;
 use crate::file::{Checked, Section, hint};
 use crate::measures::servo::{ARM_SIDE, Servo};
 
-/// N mm per kg cm.
+/// Torque of 1 kg cm, N mm.
 const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
 
 /// A type of servo, in the units of its data sheet.
@@ -173,8 +173,10 @@ mod tests {
     use crate::Robot;
     use crate::testing::robot_with;
 
+    /// The header before which a test inserts its lines.
     const NEXT_TABLE: &str = "[servo.A1]";
 
+    /// Reads the paper's robot with these lines before `[servo.A1]`.
     fn robot(keys: &str) -> Result<Robot, crate::Error> {
         robot_with("paper", &[(NEXT_TABLE, &format!("{keys}\n{NEXT_TABLE}"))])
     }

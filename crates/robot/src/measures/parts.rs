@@ -13,7 +13,7 @@ use crate::measures::coil::Coil;
 pub struct Parts {
     /// Clearance on each side of a part that is pushed into another one or slides in it.
     pub fit: f64,
-    /// Least thickness of a printed wall.
+    /// Smallest thickness of a printed wall.
     pub wall: f64,
     /// Width of links and couplers.
     pub bar: f64,
@@ -60,15 +60,15 @@ pub struct Parts {
 }
 
 /// Defines the dimensions of a part: a struct of lengths with their defaults, and the reader of its
-/// table. Each length must be 0.1 to 200 mm, and any key may be left out.
-macro_rules! measures {
-    ($($(#[$doc:meta])* $type:ident in $table:literal {
-        $($(#[$of_key:meta])* $key:ident: $default:literal,)*
+/// table. Each length must be within 0.1 to 200 mm; every key is optional.
+macro_rules! dimensions {
+    ($($(#[$type_doc:meta])* $type:ident in $table:literal {
+        $($(#[$key_doc:meta])* $key:ident: $default:literal,)*
     })*) => {$(
-        $(#[$doc])*
+        $(#[$type_doc])*
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct $type {
-            $($(#[$of_key])* pub $key: f64,)*
+            $($(#[$key_doc])* pub $key: f64,)*
         }
 
         impl $type {
@@ -88,7 +88,7 @@ macro_rules! measures {
     )*};
 }
 
-measures! {
+dimensions! {
     /// A servo without its horn, mm. Heights are from the bottom of its case.
     ServoBody in "servo" {
         /// Length of the case, along its flange.
@@ -188,6 +188,7 @@ impl Default for Parts {
     }
 }
 
+/// The keys of `[parts]`.
 const KEYS: [&str; 20] = [
     "fit",
     "wall",
@@ -281,6 +282,7 @@ mod tests {
     use super::*;
     use crate::testing::robot_with;
 
+    /// Reads the parts of the paper's robot with these lines.
     fn parts_with(table: &str) -> Result<Parts, String> {
         const NEXT_TABLE: &str = "[ground]";
         robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])

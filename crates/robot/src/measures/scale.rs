@@ -1,16 +1,16 @@
-//! The scale of a mechanism's lengths: the finest step with which its longest bars still fit into the core's 16-bit
+//! The scale of a mechanism's lengths: the finest step with which its longest links still fit into the core's 16-bit
 //! integers.
 
 use lizard_core::numbers::units::Scale;
 use lizard_core::numbers::{bars, slider};
 use lizard_kinematics::{FiveBar, Slider};
 
-/// The longest bar that robot.toml may have, mm.
-pub(crate) const LONGEST_BAR: f64 = 1000.0;
+/// Largest length of a link that robot.toml may have, mm.
+pub(crate) const MAX_LINK_LENGTH_MM: f64 = 1000.0;
 
 // Every mechanism that robot.toml may describe fits at some scale.
-const _: () = assert!(3.0 * LONGEST_BAR < bars::MAX_LENGTH_STEPS);
-const _: () = assert!(4.0 * LONGEST_BAR < slider::MAX_ARM_STEPS);
+const _: () = assert!(3.0 * MAX_LINK_LENGTH_MM < bars::MAX_LENGTH_STEPS);
+const _: () = assert!(4.0 * MAX_LINK_LENGTH_MM < slider::MAX_ARM_STEPS);
 
 /// The number of steps per millimetre at a scale.
 pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
@@ -18,12 +18,12 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
 }
 
 /// Finds the finest scale for the five-bar of head or tail.
-pub(crate) fn five_bar_scale(bars: &FiveBar) -> Scale {
-    let base_and_cranks = bars.base + bars.left_crank_length + bars.right_crank_length;
+pub(crate) fn five_bar_scale(five_bar: &FiveBar) -> Scale {
+    let base_and_cranks = five_bar.base + five_bar.left_crank_length + five_bar.right_crank_length;
     find_finest_scale(&[
         (base_and_cranks, bars::MAX_LENGTH_STEPS),
-        (bars.left_coupler_length, bars::MAX_LENGTH_STEPS),
-        (bars.right_coupler_length, bars::MAX_LENGTH_STEPS),
+        (five_bar.left_coupler_length, bars::MAX_LENGTH_STEPS),
+        (five_bar.right_coupler_length, bars::MAX_LENGTH_STEPS),
     ])
 }
 
@@ -42,15 +42,15 @@ pub(crate) fn side_scale(side: &Slider, stroke_max: f64) -> Scale {
 
 /// Finds the finest scale at which each length (mm) has fewer steps than the bound beside it.
 fn find_finest_scale(lengths: &[(f64, f64)]) -> Scale {
-    let is_in_range = |scale: &Scale| {
+    let fits = |scale: &Scale| {
         let per_mm = steps_per_mm(*scale);
-        lengths.iter().all(|(mm, max)| mm * per_mm < *max)
+        lengths.iter().all(|(mm, bound)| mm * per_mm < *bound)
     };
     (0..=Scale::FINEST.bits)
         .rev()
         .map(|bits| Scale { bits })
-        .find(is_in_range)
-        .expect("a bar is at most a metre long")
+        .find(fits)
+        .expect("a link is at most a metre long")
 }
 
 #[cfg(test)]
@@ -58,14 +58,15 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// True if the bars fit at this number of bits, by the core's bound of 127 times 256 steps.
-    fn loop_fits(bars: &FiveBar, bits: u16) -> bool {
+    /// True if a five-bar fits at this number of bits, by the core's bound of 127 times 256 steps.
+    fn five_bar_fits(five_bar: &FiveBar, bits: u16) -> bool {
         let steps_of = |mm: f64| mm * f64::from(1u32 << bits);
-        let base_and_cranks = bars.base + bars.left_crank_length + bars.right_crank_length;
+        let base_and_cranks =
+            five_bar.base + five_bar.left_crank_length + five_bar.right_crank_length;
         [
             base_and_cranks,
-            bars.left_coupler_length,
-            bars.right_coupler_length,
+            five_bar.left_coupler_length,
+            five_bar.right_coupler_length,
         ]
         .into_iter()
         .all(|mm| steps_of(mm) < 127.0 * 256.0)
@@ -80,24 +81,24 @@ mod tests {
             && steps_of(side.nominal_length + stroke_max) < 255.0 * 256.0
     }
 
-    /// Makes a strategy of lengths of 1 to 1000 mm, short ones as likely as long ones.
+    /// Lengths of 1 to 1000 mm, evenly distributed on a logarithmic scale.
     fn any_length() -> impl Strategy<Value = f64> {
         (0.0..3.0f64).prop_map(|exponent| 10f64.powf(exponent))
     }
 
     proptest! {
         #[test]
-        fn a_loops_scale_is_the_finest_that_fits(
+        fn the_scale_of_a_five_bar_is_the_finest_that_fits(
             lengths in prop::array::uniform5(any_length()),
         ) {
-            let bars = FiveBar::new(lengths);
-            let bits = five_bar_scale(&bars).bits;
-            prop_assert!(loop_fits(&bars, bits));
-            prop_assert!(bits == 14 || !loop_fits(&bars, bits + 1), "{bits}");
+            let five_bar = FiveBar::new(lengths);
+            let bits = five_bar_scale(&five_bar).bits;
+            prop_assert!(five_bar_fits(&five_bar, bits));
+            prop_assert!(bits == 14 || !five_bar_fits(&five_bar, bits + 1), "{bits}");
         }
 
         #[test]
-        fn a_sides_scale_is_the_finest_that_fits(
+        fn the_scale_of_a_side_is_the_finest_that_fits(
             [base, front_arm, rear_arm, nominal_length, stroke] in prop::array::uniform5(any_length()),
             front_offset in -500.0..500.0f64,
         ) {
@@ -112,27 +113,27 @@ mod tests {
     fn a_sum_of_lengths_at_the_bound_halves_the_steps_per_mm() {
         // With a base of 47 mm, base and cranks add up to 127 mm. This is exactly the bound at 256 steps per mm, so a
         // coarser scale is needed.
-        let bars_with_base = |base| FiveBar {
+        let five_bar_with_base = |base| FiveBar {
             base,
             left_crank_length: 40.0,
             left_coupler_length: 60.0,
             right_coupler_length: 60.0,
             right_crank_length: 40.0,
         };
-        assert_eq!(five_bar_scale(&bars_with_base(46.99)).bits, 8);
-        assert_eq!(five_bar_scale(&bars_with_base(47.0)).bits, 7);
+        assert_eq!(five_bar_scale(&five_bar_with_base(46.99)).bits, 8);
+        assert_eq!(five_bar_scale(&five_bar_with_base(47.0)).bits, 7);
     }
 
     #[test]
     fn the_smallest_and_the_largest_robot_have_a_scale() {
-        let equal_bars = |mm| FiveBar {
+        let equal_five_bar = |mm| FiveBar {
             base: mm,
             left_crank_length: mm,
             left_coupler_length: mm,
             right_coupler_length: mm,
             right_crank_length: mm,
         };
-        assert_eq!(five_bar_scale(&equal_bars(1.0)).bits, 13);
-        assert_eq!(five_bar_scale(&equal_bars(LONGEST_BAR)).bits, 3);
+        assert_eq!(five_bar_scale(&equal_five_bar(1.0)).bits, 13);
+        assert_eq!(five_bar_scale(&equal_five_bar(MAX_LINK_LENGTH_MM)).bits, 3);
     }
 }

@@ -30,7 +30,7 @@ pub const OPPOSITE_SERVO: [usize; 4] = [1, 0, 3, 2];
 /// One servo, as robot.toml defines it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servo {
-    /// Arduino number of its signal pin.
+    /// Arduino number of the servo's signal pin.
     pub pin: u8,
     /// Angle in the chassis frame at which the horn is fitted, deg.
     pub neutral: f64,
@@ -45,8 +45,8 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// The travel: the smallest and the largest sweep from neutral, deg. Neither exceeds half a turn, even if the pulses
-    /// allow more.
+    /// The travel: the smallest and the largest sweep from neutral, deg. Neither exceeds half a turn, even if the
+    /// pulses allow more.
     pub fn travel(&self) -> (f64, f64) {
         let sweep_at_min = (self.min_us - self.neutral_us) / self.us_per_degree;
         let sweep_at_max = (self.max_us - self.neutral_us) / self.us_per_degree;
@@ -91,7 +91,7 @@ pub struct SpeedLimits {
 /// (14 to 19); `None` for any other name.
 pub(crate) fn parse_pin(name: &str) -> Option<u8> {
     let (letter, number) = name.split_at_checked(1)?;
-    // "+5" and "05" would parse, but are not names of pins.
+    // "+5" and "05" would be parsed as 5, but are not names of pins.
     let number: u8 = number
         .parse()
         .ok()
@@ -159,6 +159,7 @@ pub(crate) fn read(root: &Section) -> Checked<[Servo; 4]> {
     Ok([servos[0], servos[1], servos[2], servos[3]])
 }
 
+/// Reads the table of one servo.
 fn read_servo(section: &Section) -> Checked<Servo> {
     let read_width = |name| section.number(name, PULSE_RANGE_US.0, PULSE_RANGE_US.1, "us");
     let pin = read_pin(section)?;
@@ -187,6 +188,7 @@ fn read_servo(section: &Section) -> Checked<Servo> {
 mod tests {
     use super::*;
 
+    /// A servo that a longer pulse turns clockwise.
     const SERVO: Servo = Servo {
         pin: 9,
         neutral: 47.0,
@@ -205,7 +207,7 @@ mod tests {
         assert_eq!(
             SERVO.pulse(47.0 - 350.0),
             1425.0,
-            "a turn is taken the short way round"
+            "the servo turns the shorter way round"
         );
     }
 
@@ -220,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn slider_arms_are_on_the_side_that_the_kinematics_gives_them() {
+    fn slider_arms_are_on_the_same_side_as_in_the_kinematics() {
         use lizard_kinematics::Vector;
         let crank = Vector::new(1.0, 0.0);
         for side in Side::ALL {

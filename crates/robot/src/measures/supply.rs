@@ -1,5 +1,5 @@
-//! The supply voltages of the board and of the servos: how they are measured, and the thresholds at which the robot
-//! slows down, stops and rests.
+//! The supply voltages of the board and of the servos: their measurement, and the thresholds at which the robot slows
+//! down, stops and rests.
 
 use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
 
@@ -68,9 +68,9 @@ const DEFAULT_SLOW_PACE_PERCENT: u8 = 50;
 const MIN_PACE_PERCENT: f64 = 10.0;
 
 impl Rail {
-    /// Sets the first threshold, if it follows from the servos: the voltage below which the hardest gait would use more
-    /// than `allowed_share` of the servos' torque-speed line. `used_share` is the share that this gait uses at the
-    /// supply `volts`.
+    /// Sets the first threshold, if it follows from the servos: the voltage below which the most demanding gait would
+    /// use more than `allowed_share` of the servos' torque-speed line. `used_share` is the share that this gait uses at
+    /// the supply `volts`.
     pub(crate) fn set_slow_threshold(&mut self, used_share: f64, allowed_share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + MIN_THRESHOLD_GAP;
@@ -150,19 +150,20 @@ pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
         .then(|| (mv.max(BOARD_MV) / ratio).min(BOARD_MV - 1.0).floor())
 }
 
+/// Reads `[supply.rail]`; `None` if the table is left out.
 fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     if !supply.has_key("rail") {
         return Ok(None);
     }
     let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
-    let text = section.text("pin")?;
-    let fault_of = |reason: String| section.error("pin", format!("is \"{text}\"{reason}"));
-    let pin = parse_pin(text)
+    let pin_name = section.text("pin")?;
+    let error_of = |reason: String| section.error("pin", format!("is \"{pin_name}\"{reason}"));
+    let pin = parse_pin(pin_name)
         .filter(|pin| ANALOGUE_PINS.contains(pin))
-        .ok_or_else(|| fault_of("; it must be one of A0 to A5".to_string()))?;
+        .ok_or_else(|| error_of("; it must be one of A0 to A5".to_string()))?;
     if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {
         let owner = SERVO_NAMES[servo];
-        return Err(fault_of(format!(", which servo.{owner} already has")));
+        return Err(error_of(format!(", which servo.{owner} already has")));
     }
     // Up to a battery of two lithium cells, 8.4 V, through a divider of two or more.
     let ratio = section.number("ratio", 1.0, 6.0, "(rail over pin)")?;
@@ -216,8 +217,10 @@ mod tests {
 
     use crate::testing::robot_with;
 
+    /// The header before which a test inserts its lines.
     const NEXT_TABLE: &str = "[ground]";
 
+    /// Reads the paper's robot with these lines before `[ground]`.
     fn robot_with_supply(table: &str) -> Result<crate::Robot, crate::Error> {
         robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
     }
@@ -290,10 +293,10 @@ mod tests {
         let rough_volts = slow_volts_with("", "", "0.8");
         let supply_share = rough_volts / 4.8;
         assert!(rough_volts > sg90_volts + 0.1, "{rough_volts}");
-        let gripping_robot = robot_with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.8")])
+        let rough_robot = robot_with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.8")])
             .expect("the robot is valid");
-        let shares = gripping_robot.gaits().iter().map(|gait| {
-            let effort = crate::Effort::of(gait, gripping_robot.ground(), &gripping_robot.motors());
+        let shares = rough_robot.gaits().iter().map(|gait| {
+            let effort = crate::Effort::of(gait, rough_robot.ground(), &rough_robot.motors());
             effort.line_share(1.0, supply_share)
         });
         let largest_share = shares.fold(0.0, f64::max);
@@ -318,7 +321,11 @@ mod tests {
         let servo = format!("[servo]\n{servo}\n[servo.A1]");
         let robot =
             robot_with("paper", &[("[servo.A1]", &servo), (NEXT_TABLE, &tables)]).expect(rail);
-        let [_, stop, _] = robot.supplies().rail.expect("a rail").thresholds;
+        let [_, stop, _] = robot
+            .supplies()
+            .rail
+            .expect("the rail is measured")
+            .thresholds;
         let servo_volts = robot.servo_type().volts;
         let effort_of = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
         let efforts: Vec<_> = robot.gaits().iter().map(effort_of).collect();
@@ -344,11 +351,11 @@ mod tests {
             (11..default_pace).contains(&rough_pace) && default_pace < 100,
             "{rough_pace} {default_pace}"
         );
-        // The same is true if the threshold is given. A robot that stops at a higher voltage may go faster.
+        // The same is true if the threshold is given. A robot that stops at a higher voltage may walk faster.
         let [given_pace, searched_pace] = slow_paces("", "slow = 4.7\nstop = 4.5", 0.9);
         assert_eq!(given_pace, searched_pace);
         assert!(given_pace > rough_pace, "{given_pace} {rough_pace}");
-        // With the first servos no pace is slow enough, with the second no pace is too fast.
+        // The first servos sustain no pace, the second sustain every pace.
         assert_eq!(
             slow_paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2),
             [10, 10]
@@ -374,7 +381,7 @@ mod tests {
                 ),
             ],
         );
-        let refusal = refusal.expect_err("a pin of a servo").to_string();
+        let refusal = refusal.expect_err("the pin belongs to a servo").to_string();
         assert!(refusal.contains("which servo.A1 already has"), "{refusal}");
     }
 }

@@ -1,7 +1,7 @@
 //! The robot's numbers as integers, in the types of the core.
 //!
-//! Sixteen bits can hold any robot's lengths if the step suits the robot's size, so each five-bar and each slider
-//! has its own scale. Limits are rounded to the safe side: the limits of margins up, strokes and travels inward, and the
+//! Sixteen bits can hold any robot's lengths if the step suits the robot's size, so each five-bar and each slider has
+//! its own scale. Limits are rounded to the safe side: the limits of margins up, strokes and travels inward, and the
 //! slew limit down. All other numbers are rounded to the nearest integer.
 
 use lizard_avr::Flash;
@@ -95,16 +95,21 @@ fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 
     crc32fast::hash(format!("{pins:?} [{angles}] [{}]", servos.join(", ")).as_bytes())
 }
 
-fn convert_five_bar(bars: &kinematics::FiveBar) -> FiveBarLengths {
-    let scale = scale::five_bar_scale(bars);
+/// Converts the lengths of a five-bar to integers.
+fn convert_five_bar(five_bar: &kinematics::FiveBar) -> FiveBarLengths {
+    let scale = scale::five_bar_scale(five_bar);
     let length_of = |mm: f64| to_steps(mm, scale) as i16;
     // The crank tips are farthest apart if both cranks point outward. The core takes their squared distance in units of
     // four squared steps, so half the distance is squared.
-    let [base, left, right] =
-        [bars.base, bars.left_crank_length, bars.right_crank_length].map(length_of);
+    let [base, left, right] = [
+        five_bar.base,
+        five_bar.left_crank_length,
+        five_bar.right_crank_length,
+    ]
+    .map(length_of);
     let half_tip_distance = (base as u32 + left as u32 + right as u32) / 2 + 2;
     let [left_coupler, right_coupler] =
-        [bars.left_coupler_length, bars.right_coupler_length].map(length_of);
+        [five_bar.left_coupler_length, five_bar.right_coupler_length].map(length_of);
     FiveBarLengths {
         scale,
         base,
@@ -118,6 +123,7 @@ fn convert_five_bar(bars: &kinematics::FiveBar) -> FiveBarLengths {
     }
 }
 
+/// Converts a servo's pulse widths, gain and travel to integers; its travel is rounded inward.
 fn calibration_of(servo: &Servo) -> Calibration {
     let (min, max) = servo.travel();
     let gain = servo.us_per_degree * CYCLES_PER_US / STEPS_PER_DEGREE * ONE_Q14;
@@ -182,10 +188,12 @@ fn to_sine(margin: f64) -> Sine {
     Sine(ceil_with_allowance(margin * ONE_Q15) as i16)
 }
 
+/// Rounds up, except for a value that exceeds an integer only by a rounding error.
 fn ceil_with_allowance(value: f64) -> i64 {
     (value - ROUNDING_ALLOWANCE).ceil() as i64
 }
 
+/// Rounds down, except for a value that is below an integer only by a rounding error.
 fn floor_with_allowance(value: f64) -> i64 {
     (value + ROUNDING_ALLOWANCE).floor() as i64
 }
@@ -210,11 +218,11 @@ mod tests {
             [links.l0, links.l1, links.l4, links.l2, links.l3],
             [links.l5, links.l6, links.l9, links.l7, links.l8],
         ];
-        for (bars, mm) in content.ends.iter().zip(loops) {
-            let ([left, right], [a, b]) = (bars.cranks, bars.couplers);
-            let steps = [bars.base, left, right, a, b];
+        for (lengths, mm) in content.ends.iter().zip(loops) {
+            let ([left, right], [a, b]) = (lengths.cranks, lengths.couplers);
+            let steps = [lengths.base, left, right, a, b];
             assert_eq!(steps.map(f64::from), mm.map(|mm| mm * STEPS_PER_MM));
-            assert_eq!(bars.scale.bits, 8);
+            assert_eq!(lengths.scale.bits, 8);
         }
         let offset = (links.l5 - links.l0) / 2.0;
         let sides = [
@@ -303,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn a_travel_of_whole_steps_keeps_its_last_step() {
+    fn a_travel_of_a_whole_number_of_steps_keeps_its_last_step() {
         // 9.2 and 10.4 us are not exact in binary, so the quotient may be slightly too small.
         for us_per_degree in [7.3, -7.3, 8.5, 9.2, -10.4, 11.1] {
             for k in 1..=13 {
@@ -330,25 +338,25 @@ mod tests {
     fn a_loop_can_nearly_stretch_beyond_three_quarters_of_its_squared_reach() {
         // The threshold is three quarters of the squared reach of the couplers, so base plus cranks must exceed 0.866
         // of the sum of both couplers.
-        for (bars, is_near) in [
+        for (base_and_cranks, is_near) in [
             ([20.0, 30.0, 30.0], false),
             ([26.0, 30.0, 30.0], false),
             ([28.0, 30.0, 30.0], true),
             ([20.0, 38.0, 30.0], true),
             ([20.0, 30.0, 38.0], true),
         ] {
-            let [base, crank_left, crank_right] = bars;
-            let bars = kinematics::FiveBar {
+            let [base, left_crank_length, right_crank_length] = base_and_cranks;
+            let five_bar = kinematics::FiveBar {
                 base,
-                left_crank_length: crank_left,
+                left_crank_length,
                 left_coupler_length: 50.0,
                 right_coupler_length: 50.0,
-                right_crank_length: crank_right,
+                right_crank_length,
             };
             assert_eq!(
-                convert_five_bar(&bars).can_nearly_stretch,
+                convert_five_bar(&five_bar).can_nearly_stretch,
                 is_near,
-                "{bars:?}"
+                "{five_bar:?}"
             );
         }
     }
@@ -391,11 +399,11 @@ mod tests {
                     }
                 }
             }
-            let reach = lizard_core::numbers::part::Servo::ALL.map(|servo| {
-                let reach = firmware.needed_travel(servo);
-                (reach.min.0, reach.max.0)
+            let needed_travels = lizard_core::numbers::part::Servo::ALL.map(|servo| {
+                let travel = firmware.needed_travel(servo);
+                (travel.min.0, travel.max.0)
             });
-            assert_eq!(reach, widest_sweeps, "{name}");
+            assert_eq!(needed_travels, widest_sweeps, "{name}");
         }
     }
 

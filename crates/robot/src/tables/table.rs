@@ -23,7 +23,7 @@ pub(crate) struct Tables {
     pub waves: Vec<Wave>,
     /// Gaits in the order of the file.
     pub gaits: Vec<TableGait>,
-    /// Names of the gaits, concatenated, with blanks between words.
+    /// Names of the gaits, concatenated, with spaces between words.
     pub names: Vec<u8>,
 }
 
@@ -38,16 +38,16 @@ impl Tables {
         let mut stored_strides = Vec::new();
         for gait in gaits {
             let key = format!("gait.{}", gait.name);
-            for ((stride, forward), name) in
+            for ((stride, forward_sign), name) in
                 gait.strides.iter().zip(FORWARD_TURN_SIGN).zip(SERVO_NAMES)
             {
-                let Some(stored_stride) = bank.find_or_add(stride, forward) else {
-                    let meaning = format!(
+                let Some(stored_stride) = bank.find_or_add(stride, forward_sign) else {
+                    let consequence = format!(
                         "in \"{}\" servo {name} would have to turn farther than it can",
                         gait.name
                     );
                     let message = "its sweep is half a turn or more";
-                    return Err(UnlocatedError::clause(key, message).with_consequence(meaning));
+                    return Err(UnlocatedError::clause(key, message).with_consequence(consequence));
                 };
                 stored_strides.push(stored_stride);
             }
@@ -105,10 +105,10 @@ impl Tables {
 }
 
 impl Tables {
-    /// Returns the sweeps from neutral of the gait number `gait` at a phase in 1/65536 cycle: in angle steps,
+    /// Returns the sweeps from neutral of the gait with this index at a phase in 1/65536 cycle: in angle steps,
     /// positive counter-clockwise, servo order.
-    pub fn sweeps(&self, gait: usize, phase: u16) -> [i16; 4] {
-        self.gaits[gait].channels.map(|channel| {
+    pub fn sweeps(&self, gait_index: usize, phase: u16) -> [i16; 4] {
+        self.gaits[gait_index].channels.map(|channel| {
             let wave = Flash::from(&self.waves[usize::from(channel.wave)]);
             channel.sweep(wave, phase).0
         })
@@ -117,12 +117,17 @@ impl Tables {
 
 /// Computes a gait's phase increment per frame, in 1/2^24 cycle; negative if the gait is reversed.
 fn increment_of(gait: &Gait) -> i32 {
-    let step = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
-    if gait.is_reversed { -step } else { step }
+    let increment = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
+    if gait.is_reversed {
+        -increment
+    } else {
+        increment
+    }
 }
 
 /// A stride as the firmware stores it: a waveform of the bank times an amplitude, with a lead.
 struct StoredStride {
+    /// Index of the waveform in the bank.
     wave: usize,
     /// Lead of the stride over the stored waveform, cycles.
     lead: f64,
@@ -133,6 +138,7 @@ struct StoredStride {
 /// The waveforms found so far, each scaled to a peak of 1.
 #[derive(Default)]
 struct WaveformBank {
+    /// The samples of each waveform.
     samples: Vec<[f64; SAMPLES_PER_WAVE]>,
 }
 
@@ -188,8 +194,8 @@ impl WaveformBank {
         let peak_amplitude_of = |wave| {
             stored_strides
                 .iter()
-                .filter(|part| part.wave == wave)
-                .fold(0.0f64, |max, part| max.max(part.amplitude.abs()))
+                .filter(|stride| stride.wave == wave)
+                .fold(0.0f64, |max, stride| max.max(stride.amplitude.abs()))
         };
         (0..self.samples.len()).map(peak_amplitude_of).collect()
     }
@@ -215,6 +221,7 @@ fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES_PER_WAVE] {
     })
 }
 
+/// The largest magnitude among the samples.
 fn peak_of(samples: &[f64; SAMPLES_PER_WAVE]) -> f64 {
     let larger_magnitude = |peak: f64, value: &f64| peak.max(value.abs());
     samples.iter().fold(0.0, larger_magnitude)
@@ -237,6 +244,7 @@ mod tests {
     use crate::Robot;
     use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
 
+    /// Number of waveforms in a robot's tables.
     fn wave_count(robot: &Robot) -> usize {
         robot.firmware().waves().len()
     }
@@ -276,6 +284,7 @@ mod tests {
         }
     }
 
+    /// The id of the gait with this index.
     fn gait_id(robot: &Robot, index: usize) -> lizard_core::numbers::gaits::GaitId {
         lizard_core::numbers::gaits::GaitId::all(robot.gaits().len())
             .nth(index)
@@ -283,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gaits_name_in_the_core_has_blanks_for_dashes() {
+    fn a_gaits_name_in_the_core_has_spaces_instead_of_hyphens() {
         for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let firmware = robot.firmware();
@@ -299,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn a_leg_that_starts_later_reads_its_table_later() {
+    fn a_leg_that_starts_later_reads_its_table_with_the_same_delay() {
         let robot = robot("paper");
         let walk = robot.gait("walk").expect("the robot has the gait walk");
         for phase in 0..=u16::MAX {
@@ -312,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn mirrored_gaits_mirror_each_other_to_the_last_step() {
+    fn the_tables_of_mirrored_gaits_differ_by_at_most_a_step() {
         for (name, a, b) in [
             ("paper", "left", "right"),
             ("paper", "arc-left", "arc-right"),
@@ -328,7 +337,7 @@ mod tests {
                 let actual = b.table_sweeps(phase);
                 // The core rounds halves up on both sides of zero, so mirrored values may differ by a step.
                 assert!(
-                    mirrored.iter().zip(actual).all(|(m, o)| m.abs_diff(o) <= 1),
+                    mirrored.iter().zip(actual).all(|(a, b)| a.abs_diff(b) <= 1),
                     "{name} {} at {phase}",
                     a.name()
                 );
@@ -341,9 +350,9 @@ mod tests {
         // Two waves, two waveforms with holds that four turning gaits share, and one path for two servos that mirror
         // each other.
         assert_eq!(wave_count(&robot("paper")), 5);
-        let other_robot = robot_with("paper", &[("amplitude = 15.0", "amplitude = 14.0")])
+        let smaller_robot = robot_with("paper", &[("amplitude = 15.0", "amplitude = 14.0")])
             .expect("the robot is valid");
-        assert_eq!(wave_count(&other_robot), 5);
+        assert_eq!(wave_count(&smaller_robot), 5);
         let duty_robot =
             robot_with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("the robot is valid");
         assert_eq!(wave_count(&duty_robot), 5);

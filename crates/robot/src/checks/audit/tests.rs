@@ -24,8 +24,8 @@ fn slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
 /// A gait without movement, which every robot needs.
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
-/// The robot `unequal` with its sliders at nominal length in the neutral pose. Its only moving gait, `lean`, moves the legs
-/// of one side, so that only that slider moves.
+/// The robot `unequal` with its sliders at nominal length in the neutral pose. Its only moving gait, `lean`, moves the
+/// legs of one side, so that only that slider moves.
 fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
     let legs = if is_right {
         "LF = 0.0, LH = 0.0"

@@ -1,4 +1,4 @@
-//! A cell: a rectangle in the plane of two servos' angles, and the proof that all its poses keep a condition of the
+//! A cell: a rectangle in the plane of two servos' angles, and the proof that all its poses meet a condition of the
 //! guard.
 
 use std::f64::consts::TAU;
@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use lizard_core::numbers::units::STEPS_PER_TURN;
 use lizard_kinematics::Vector;
 
-/// Largest number of times that a cell is divided in four before it counts as not proven. A bound over a cell is too
-/// wide by an amount about proportional to the cell's size, so each division proves cells that are half as far from a
-/// limit.
+/// Largest number of times that a cell is divided in four before it counts as undecided. A bound over a cell is too
+/// wide by an amount roughly proportional to the cell's size, so each division proves cells that are half as far from
+/// a limit.
 const MAX_DIVISIONS: u32 = 4;
 
 /// Allowance for floating-point errors, both of a sine and of a length in mm. It is far larger than these errors.
@@ -25,13 +25,13 @@ pub(super) struct Span {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell(pub [Span; 2]);
 
-/// The result of judging a condition over a cell.
+/// The verdict on a condition over a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Every pose of the cell keeps the condition, as the firmware computes it in integers.
-    Kept,
-    /// The centre of the cell breaks the condition.
-    Broken,
+    /// Every pose of the cell meets the condition, as the firmware computes it in integers.
+    Proven,
+    /// The centre of the cell violates the condition.
+    Violated,
     /// The bounds over the cell are too wide for a decision.
     Undecided,
 }
@@ -83,10 +83,11 @@ impl Cell {
         self.proves_within(condition, MAX_DIVISIONS)
     }
 
+    /// Proves a condition as [`Cell::proves`] does, with at most this many further divisions.
     fn proves_within(&self, condition: &impl Condition, divisions: u32) -> bool {
         match condition.judge(self) {
-            Verdict::Kept => true,
-            Verdict::Broken => false,
+            Verdict::Proven => true,
+            Verdict::Violated => false,
             Verdict::Undecided => {
                 let [rows, columns] = self.0.map(Span::halves);
                 divisions > 0

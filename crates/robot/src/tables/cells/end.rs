@@ -15,7 +15,7 @@
 //! * A leg's margin is the sine of its own crank angle, and this sine is smallest at an end point of the angle's range.
 //!
 //! The guard computes with integers. Its margins are smaller than the true ones by at most their error bounds, and
-//! must still keep the guard's limits.
+//! must still meet the guard's limits.
 
 use lizard_core::guard::bounds::{self, MAX_DIRECTION_ERROR};
 use lizard_core::numbers::limits::Limits;
@@ -29,7 +29,8 @@ use crate::units::ONE_Q15;
 /// The conditions of the guard for the head or tail five-bar.
 pub(super) struct EndConditions {
     end: End,
-    bars: FiveBar,
+    /// The five-bar with its true lengths.
+    five_bar: FiveBar,
     /// The scale and the couplers as the guard's integers have them.
     rounded_bars: bounds::RoundedBars,
     /// Smallest type-2 margin that the guard allows, a sine.
@@ -47,7 +48,7 @@ impl EndConditions {
         let sine_of = |limit: Sine| f64::from(limit.0) / ONE_Q15;
         Self {
             end,
-            bars: lizard.end(end),
+            five_bar: lizard.end(end),
             rounded_bars: bounds::RoundedBars {
                 scale: five_bar_lengths.scale,
                 couplers: five_bar_lengths.couplers,
@@ -58,12 +59,13 @@ impl EndConditions {
         }
     }
 
-    /// Returns the smallest sine of a leg over a range of its servo's angles. The range must be narrower than half a turn.
+    /// Returns the smallest sine of a leg over a range of its servo's angles. The range must be narrower than half a
+    /// turn.
     fn min_leg_sine(&self, span: &Span) -> f64 {
-        let half = span.half_width_rad();
+        let half_width = span.half_width_rad();
         let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
         // The centre, rotated by half the range in either direction.
-        sin * half.cos() - cos.abs() * half.sin()
+        sin * half_width.cos() - cos.abs() * half_width.sin()
     }
 }
 
@@ -83,49 +85,52 @@ impl Condition for EndConditions {
         let directions = [left, right].map(|span| self.end.mirror(span.direction()));
         let [left_crank, right_crank] = directions;
         let Ok(pose) = self
-            .bars
+            .five_bar
             .close(AssemblyMode::Ahead, left_crank, right_crank)
         else {
-            return Verdict::Broken;
+            return Verdict::Violated;
         };
         let type1 = [pose.type1_left(), pose.type1_right()];
-        let keeps_limits = pose.gap.x > 0.0
+        let meets_limits = pose.gap.x > 0.0
             && pose.type2 >= self.type2_limit
             && type1.iter().all(|margin| *margin >= self.type1_limit)
             && directions.iter().all(|crank| crank.y >= self.leg_limit);
-        if !keeps_limits {
-            return Verdict::Broken;
+        if !meets_limits {
+            return Verdict::Violated;
         }
 
-        let crank_movement = self.bars.left_crank_length * left.half_width_rad()
-            + self.bars.right_crank_length * right.half_width_rad();
+        let crank_movement = self.five_bar.left_crank_length * left.half_width_rad()
+            + self.five_bar.right_crank_length * right.half_width_rad();
         let tip_distance = pose.gap.length();
         let tip_distance_range = [
             (tip_distance - crank_movement).max(0.0),
             tip_distance + crank_movement,
         ];
-        let errors = bounds::EndErrors::between(&self.bars, self.rounded_bars, tip_distance_range);
+        let errors =
+            bounds::EndErrors::between(&self.five_bar, self.rounded_bars, tip_distance_range);
         let is_uncrossed = pose.gap.x - crank_movement > errors.gap_x + ROUNDING_ALLOWANCE;
         if !(errors.are_margins_known && is_uncrossed) {
             return Verdict::Undecided;
         }
         let coupler_turn = |coupler: f64| crank_movement / (coupler * errors.min_type2);
-        let elbow_losses = [
-            left.half_width_rad() + coupler_turn(self.bars.left_coupler_length) + errors.type1_left,
+        let type1_losses = [
+            left.half_width_rad()
+                + coupler_turn(self.five_bar.left_coupler_length)
+                + errors.type1_left,
             right.half_width_rad()
-                + coupler_turn(self.bars.right_coupler_length)
+                + coupler_turn(self.five_bar.right_coupler_length)
                 + errors.type1_right,
         ];
-        let is_kept = errors.min_type2 - errors.type2 >= self.type2_limit + ROUNDING_ALLOWANCE
+        let is_proven = errors.min_type2 - errors.type2 >= self.type2_limit + ROUNDING_ALLOWANCE
             && type1
                 .iter()
-                .zip(elbow_losses)
+                .zip(type1_losses)
                 .all(|(margin, loss)| margin - loss >= self.type1_limit + ROUNDING_ALLOWANCE)
             && [left, right].iter().all(|span| {
                 self.min_leg_sine(span) - MAX_DIRECTION_ERROR >= self.leg_limit + ROUNDING_ALLOWANCE
             });
-        if is_kept {
-            Verdict::Kept
+        if is_proven {
+            Verdict::Proven
         } else {
             Verdict::Undecided
         }
@@ -137,7 +142,7 @@ mod tests {
     use super::*;
     use crate::testing::robot;
 
-    /// Makes conditions whose limits every pose keeps, for the head of a robot without symmetry, and a cell of a single
+    /// Makes conditions whose limits every pose meets, for the head of a robot without symmetry, and a cell of a single
     /// pose, the neutral one.
     fn neutral_cell() -> (EndConditions, Cell) {
         let robot = robot("unequal");
@@ -158,20 +163,21 @@ mod tests {
         (conditions, Cell([span_of(0), span_of(1)]))
     }
 
+    /// A function that selects one of the limits.
     type Limit = fn(&mut EndConditions) -> &mut f64;
 
     #[test]
-    fn a_single_pose_is_proved_if_clear_of_each_limit_by_the_rounding_error() {
+    fn a_single_pose_is_proven_if_it_clears_each_limit_by_the_error_bound() {
         let (mut conditions, cell) = neutral_cell();
-        // Without limits every pose passes.
-        assert_eq!(conditions.judge(&cell), Verdict::Kept);
+        // Without limits every pose is proven.
+        assert_eq!(conditions.judge(&cell), Verdict::Proven);
         let cranks = cell.0.map(|span| span.direction());
         let [left, right] = cranks;
-        let pose = conditions.bars.close(AssemblyMode::Ahead, left, right);
+        let pose = conditions.five_bar.close(AssemblyMode::Ahead, left, right);
         let pose = pose.expect("the neutral pose closes");
         let tip_distance = pose.gap.length();
         let errors = bounds::EndErrors::between(
-            &conditions.bars,
+            &conditions.five_bar,
             conditions.rounded_bars,
             [tip_distance; 2],
         );
@@ -197,10 +203,10 @@ mod tests {
             assert!(bound > 1e-5 && bound < 0.01, "{bound}");
             let unlimited = *limit(&mut conditions);
             for (clearance, verdict) in [
-                (1.01 * bound, Verdict::Kept),
+                (1.01 * bound, Verdict::Proven),
                 (0.99 * bound, Verdict::Undecided),
                 (0.01 * bound, Verdict::Undecided),
-                (-0.01 * bound, Verdict::Broken),
+                (-0.01 * bound, Verdict::Violated),
             ] {
                 *limit(&mut conditions) = value - clearance;
                 assert_eq!(conditions.judge(&cell), verdict, "{value} {clearance}");
@@ -210,9 +216,9 @@ mod tests {
     }
 
     #[test]
-    fn crank_tips_that_may_have_crossed_prove_nothing() {
+    fn crank_tips_that_may_be_crossed_leave_a_cell_undecided() {
         let (conditions, _) = neutral_cell();
-        let per_step = f64::from(conditions.rounded_bars.scale.bits).exp2().recip();
+        let mm_per_step = f64::from(conditions.rounded_bars.scale.bits).exp2().recip();
         let span_at = |degrees: f64| {
             let angle = degrees * 65536.0 / 360.0;
             Span {
@@ -225,7 +231,7 @@ mod tests {
         let gap_at = |left: Span| {
             let left = left.direction();
             conditions
-                .bars
+                .five_bar
                 .pose_unchecked(AssemblyMode::Ahead, left, right.direction())
                 .gap
                 .x
@@ -242,13 +248,13 @@ mod tests {
             }
         }
         let judge_at = |mm: f64| {
-            let slope = conditions.bars.left_crank_length * apart_deg.to_radians().sin();
+            let slope = conditions.five_bar.left_crank_length * apart_deg.to_radians().sin();
             let left = span_at(apart_deg + (mm / slope).to_degrees());
-            assert!((gap_at(left) - mm).abs() < per_step);
+            assert!((gap_at(left) - mm).abs() < mm_per_step);
             conditions.judge(&Cell([left, right]))
         };
-        assert_eq!(judge_at(-per_step), Verdict::Broken);
-        assert_eq!(judge_at(per_step), Verdict::Undecided);
-        assert_eq!(judge_at(20.0 * per_step), Verdict::Kept);
+        assert_eq!(judge_at(-mm_per_step), Verdict::Violated);
+        assert_eq!(judge_at(mm_per_step), Verdict::Undecided);
+        assert_eq!(judge_at(20.0 * mm_per_step), Verdict::Proven);
     }
 }

@@ -101,6 +101,7 @@ fn certify(condition: &impl Condition, numbers: &Content) -> Map {
 
 /// A servo whose travel is divided into cells.
 struct DividedServo {
+    /// Neutral angle, chassis frame.
     neutral: Angle,
     calibration: Calibration,
 }
@@ -123,18 +124,21 @@ impl DividedServo {
     }
 }
 
-/// Finds the first and last of the contiguous columns that keep a condition, around the kept column nearest to
-/// neutral. Returns [`EMPTY_ROW`] if no column keeps it.
-fn find_certified_columns(columns: &RangeInclusive<i32>, is_kept: impl Fn(i32) -> bool) -> [i8; 2] {
+/// Finds the first and last of the contiguous certified columns around the certified column nearest to neutral.
+/// Returns [`EMPTY_ROW`] if no column is certified.
+fn find_certified_columns(
+    columns: &RangeInclusive<i32>,
+    is_certified: impl Fn(i32) -> bool,
+) -> [i8; 2] {
     let mut candidates: Vec<i32> = columns.clone().collect();
     candidates.sort_by_key(|column| (2 * column + 1).abs());
-    let Some(nearest) = candidates.into_iter().find(|column| is_kept(*column)) else {
+    let Some(nearest) = candidates.into_iter().find(|column| is_certified(*column)) else {
         return EMPTY_ROW;
     };
-    let columns_after = (nearest + 1..=*columns.end()).take_while(|column| is_kept(*column));
+    let columns_after = (nearest + 1..=*columns.end()).take_while(|column| is_certified(*column));
     let columns_before = (*columns.start()..nearest)
         .rev()
-        .take_while(|column| is_kept(*column));
+        .take_while(|column| is_certified(*column));
     [
         columns_before.last().unwrap_or(nearest) as i8,
         columns_after.last().unwrap_or(nearest) as i8,

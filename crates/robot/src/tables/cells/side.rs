@@ -1,8 +1,8 @@
 //! The condition of a side over a cell: its slider stays within its stroke.
 //!
-//! Between the cell's centre and any other pose of the cell, the tip of each arm moves by at most the arm's length times
-//! the angle of its turn, and the slider's length changes by at most the sum of both movements. With the error bound of
-//! the guard's integers added, the length must still be within the guard's stroke.
+//! Between the cell's centre and any other pose of the cell, the tip of each arm moves by at most the arm's length
+//! times the angle of its turn, and the slider's length changes by at most the sum of both movements. With the error
+//! bound of the guard's integers added, the length must still be within the guard's stroke.
 
 use lizard_core::guard::bounds;
 use lizard_core::numbers::section::Content;
@@ -55,12 +55,12 @@ impl Condition for StrokeCondition {
         let length = self.length(cell);
         let clearance = (length - self.min_length).min(self.max_length - length);
         if clearance < 0.0 {
-            return Verdict::Broken;
+            return Verdict::Violated;
         }
         let arm_movement = self.slider.front_arm * front.half_width_rad()
             + self.slider.rear_arm * rear.half_width_rad();
         if clearance - arm_movement - self.error_bound >= ROUNDING_ALLOWANCE {
-            Verdict::Kept
+            Verdict::Proven
         } else {
             Verdict::Undecided
         }
@@ -74,7 +74,7 @@ mod tests {
     use crate::testing::robot;
 
     #[test]
-    fn a_single_pose_is_proved_if_its_slider_clears_both_ends_by_the_rounding() {
+    fn a_single_pose_is_proven_if_its_slider_clears_both_ends_by_the_error_bound() {
         let robot = robot("unequal");
         let numbers = robot.content();
         for side in Side::ALL {
@@ -87,13 +87,13 @@ mod tests {
                 }
             });
             let cell = Cell(spans);
-            assert_eq!(condition.judge(&cell), Verdict::Kept);
+            assert_eq!(condition.judge(&cell), Verdict::Proven);
             let length = condition.length(&cell);
             for (clearance, verdict) in [
-                (1.01, Verdict::Kept),
+                (1.01, Verdict::Proven),
                 (0.99, Verdict::Undecided),
                 (0.01, Verdict::Undecided),
-                (-0.01, Verdict::Broken),
+                (-0.01, Verdict::Violated),
             ] {
                 let (min, max) = (condition.min_length, condition.max_length);
                 condition.min_length = length - clearance * condition.error_bound;

@@ -34,7 +34,7 @@ fn measures_of(robot: &Robot) -> Measures {
     }
 }
 
-/// Makes a strategy of random robots without symmetry: their links, limits and servos vary.
+/// Random robots without symmetry, with various links, limits and servos.
 fn random_measures() -> impl Strategy<Value = Measures> {
     let paper = robot("paper");
     let end_lengths = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
@@ -78,12 +78,12 @@ fn random_measures() -> impl Strategy<Value = Measures> {
                 stroke_min,
                 stroke_max,
             },
-            servos: std::array::from_fn(|n| {
-                let (offset, gain, reversed) = servos[n];
+            servos: std::array::from_fn(|i| {
+                let (offset, gain, is_reversed) = servos[i];
                 Servo {
-                    neutral: neutral[n] + offset,
-                    us_per_degree: if reversed { -gain } else { gain },
-                    ..paper.servos()[n]
+                    neutral: neutral[i] + offset,
+                    us_per_degree: if is_reversed { -gain } else { gain },
+                    ..paper.servos()[i]
                 }
             }),
             ..measures_of(&paper)
@@ -199,13 +199,13 @@ impl RobotWithMaps {
                                 .contains(pose.0[row_servo], pose.0[column_servo])
                         );
                         let clearance = Clearance::of(&self.robot, &pose);
-                        let is_kept = margins
+                        let is_accepted = margins
                             .iter()
                             .all(|margin| clearance.margins[*margin] >= min_margins[*margin])
                             && slider.is_none_or(|side| {
                                 sides[side].allows(clearance.slider_lengths_sq[side])
                             });
-                        if !is_kept {
+                        if !is_accepted {
                             return Err(format!("{} at {pose:?}: {clearance:?}", self.name));
                         }
                     }
@@ -217,29 +217,29 @@ impl RobotWithMaps {
 }
 
 #[test]
-fn the_guard_accepts_the_corners_the_centre_and_any_pair_of_every_cell() {
+fn the_guard_accepts_the_corners_the_centre_and_random_poses_of_every_cell() {
     let mut runner = TestRunner::deterministic();
     for (name, robot) in all_robots() {
-        let cells = RobotWithMaps::of(name, &robot).check(&mut runner);
-        let cells = cells.unwrap_or_else(|message| panic!("{message}"));
-        assert!(cells > 2000, "{name}: {cells}");
+        let result = RobotWithMaps::of(name, &robot).check(&mut runner);
+        let cell_count = result.unwrap_or_else(|message| panic!("{message}"));
+        assert!(cell_count > 2000, "{name}: {cell_count}");
     }
 }
 
 #[test]
 fn the_guard_accepts_every_cell_of_random_robots() {
     let mut runner = TestRunner::deterministic();
-    let (strategy, mut cells) = (random_measures(), 0);
+    let (strategy, mut cell_count) = (random_measures(), 0);
     for number in 0..100 {
         let measures = strategy
             .new_tree(&mut runner)
             .expect("the strategy yields a robot")
             .current();
-        let subject = RobotWithMaps::from_measures(&format!("robot {number}"), &measures);
-        let checked_cells = subject.check(&mut runner);
-        cells += checked_cells.unwrap_or_else(|message| panic!("{message}"));
+        let robot = RobotWithMaps::from_measures(&format!("robot {number}"), &measures);
+        let checked_cells = robot.check(&mut runner);
+        cell_count += checked_cells.unwrap_or_else(|message| panic!("{message}"));
     }
-    assert!(cells > 100 * 1000, "{cells} cells of 100 robots");
+    assert!(cell_count > 100 * 1000, "{cell_count} cells of 100 robots");
 }
 
 #[test]
@@ -273,10 +273,10 @@ fn the_guard_accepts_every_pose_that_all_four_maps_contain() {
     }
 }
 
-/// Makes one limit after another a little stricter than in the maps. Some cell then breaks the limit, so the comparison
+/// Makes each limit in turn a little stricter than in the maps. Some cell then violates the limit, so the comparison
 /// would notice a wrong map.
 #[test]
-fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
+fn a_stricter_limit_than_that_of_the_maps_is_violated_in_a_cell() {
     let robot = robot("unequal");
     let changes: [fn(&mut lizard_kinematics::Limits); 5] = [
         |limits| limits.type2 += 0.3,
@@ -288,11 +288,14 @@ fn a_stricter_limit_than_that_of_the_maps_is_broken_in_a_cell() {
     for (index, change) in changes.into_iter().enumerate() {
         let mut stricter_measures = measures_of(&robot);
         change(&mut stricter_measures.limits);
-        let subject = RobotWithMaps::from_measures("of its own", &stricter_measures);
+        let stricter_robot = RobotWithMaps::from_measures("stricter", &stricter_measures);
         let maps = robot.cell_maps();
-        assert_ne!(subject.maps, maps, "limit {index}");
-        let mixed = RobotWithMaps { maps, ..subject };
-        let outcome = mixed.check(&mut TestRunner::deterministic());
+        assert_ne!(stricter_robot.maps, maps, "limit {index}");
+        let robot_with_old_maps = RobotWithMaps {
+            maps,
+            ..stricter_robot
+        };
+        let outcome = robot_with_old_maps.check(&mut TestRunner::deterministic());
         assert!(outcome.is_err(), "limit {index}");
     }
 }
@@ -322,7 +325,7 @@ fn certified_share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
 }
 
 #[test]
-fn every_gait_of_every_robot_is_within_the_cells_at_every_phase() {
+fn every_gait_of_every_robot_is_within_certified_cells_at_every_phase() {
     for (name, robot) in all_robots() {
         let maps = robot.cell_maps();
         for (gait, id) in robot.gaits().iter().zip(GaitId::all(robot.gaits().len())) {
