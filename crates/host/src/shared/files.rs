@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn a_file_is_replaced_and_nothing_else_is_left_in_its_folder() {
-        let folder = tempfile::tempdir().expect("a temporary folder can be created");
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
         let path = folder.path().join("new/folder/a");
         write(&path, b"old and longer").expect("a new file is written");
         write(&path, &[0, 0xff]).expect("an existing file is replaced");
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn an_input_and_a_robot_are_not_replaced_under_any_name() {
-        let folder = tempfile::tempdir().expect("a temporary folder can be created");
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
         let [input, other_name, robot, renamed_robot] =
             ["a.jsonl", "b", "robot.toml", "mine"].map(|name| folder.path().join(name));
         fs::write(&input, "an input").expect("the file is written");
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn a_folder_is_not_replaced() {
-        let folder = tempfile::tempdir().expect("a temporary folder can be created");
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
         let inner_folder = folder.path().join("inner");
         fs::create_dir(&inner_folder).expect("a folder is created");
         assert!(
@@ -281,7 +281,7 @@ mod tests {
     #[cfg(unix)]
     fn writing_through_a_link_keeps_the_link_and_the_permissions_of_its_target() {
         use std::os::unix::fs::{PermissionsExt, symlink};
-        let folder = tempfile::tempdir().expect("a temporary folder can be created");
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
         let [file, link, broken_link] =
             ["file", "link", "astray"].map(|name| folder.path().join(name));
         fs::write(&file, "old").expect("the file is written");
@@ -305,7 +305,7 @@ mod tests {
     #[test]
     #[cfg(unix)]
     fn a_stream_gets_the_bytes_and_stays() {
-        let folder = tempfile::tempdir().expect("a temporary folder can be created");
+        let folder = tempfile::tempdir().expect("a temporary folder is created");
         // The test uses a link, so that a bug replaces the link and not the device.
         let device = folder.path().join("device");
         std::os::unix::fs::symlink("/dev/null", &device).expect("a link is created");

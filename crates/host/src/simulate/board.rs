@@ -77,7 +77,7 @@ impl From<BoardError> for Failure {
 
 /// A simulated UNO with a firmware in its flash.
 pub struct SimulatedBoard {
-    /// The UNO. Its transmitted bytes must be read only through [`SimulatedBoard::lines`] and [`SimulatedBoard::bytes`].
+    /// The UNO. Read its transmitted bytes only through [`SimulatedBoard::lines`] and [`SimulatedBoard::bytes`].
     pub uno: Uno,
     /// The pins of the servos A1 to A4.
     pins: [Pin; 4],
@@ -173,8 +173,8 @@ impl SimulatedBoard {
         self.uno.send(b"\n");
     }
 
-    /// Returns the next line without its line end; `None` if no line arrives within `ms` after the last byte still to be
-    /// sent, or if the firmware stops.
+    /// Returns the next line without its line end; `None` if no line arrives within `ms` after the last byte still to
+    /// be sent, or if the firmware stops.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
         let cycles_to_send = self.uno.bytes_unsent() as u64 * CYCLES_PER_BYTE;
         let end_cycle = self.uno.cycle() + cycles_to_send + ms * CYCLES_PER_MS;

@@ -37,7 +37,7 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         let free_pin = CANDIDATE_PINS
             .iter()
             .find(|pin| Robot::parse(&with_input(pin)).is_ok());
-        // If no pin is free, the first one is taken although it is occupied, so that the last `parse` reports the error.
+        // If no pin is free, the first pin is used although it is occupied, so that the last `parse` reports the error.
         text = with_input(free_pin.unwrap_or(&CANDIDATE_PINS[0]));
     }
     let gaits: Vec<String> = tour::moving_gaits(&robot)

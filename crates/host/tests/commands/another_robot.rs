@@ -8,12 +8,11 @@ fn release_folder() -> PathBuf {
     repo_root().join("target/avr-atmega328p/release")
 }
 
-/// Returns the robot's name and hash from the first line of a report of `lizard gaits` or of the
-/// firmware's build.
+/// Returns the robot's name and hash from the first line of a report of `lizard gaits` or of the firmware's build.
 fn name_and_hash_in(report: &str) -> String {
-    let first_line = report.lines().next().expect("a line");
-    let (_, robot) = first_line.split_once("robot ").expect("a name");
-    robot.to_owned()
+    let first_line = report.lines().next().expect("the report has a line");
+    let parts = first_line.split_once("robot ");
+    parts.expect("the line names a robot").1.to_owned()
 }
 
 /// The name and hash of the robot in the image that `make firmware` built.
@@ -31,7 +30,7 @@ fn robot_outside_image() -> (String, String) {
     });
     let image_robot = robot_of_image();
     let other_robot = robots.into_iter().find(|(_, robot)| *robot != image_robot);
-    other_robot.expect("two robots have two hashes")
+    other_robot.expect("at most one of two robots is in the image")
 }
 
 #[test]

@@ -20,7 +20,7 @@ const BOOT_LOADER_START: usize = 0x7e00;
 
 #[test]
 fn flash_needs_no_built_firmware_and_fails_only_at_the_missing_port() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     for options in [&[][..], &["--only-robot"], &["--robot", "large"]] {
         let arguments = [&["flash", "/dev/no-such-port"], options].concat();
         let message = run_in(folder.path(), &arguments, "").expect_refusal();
@@ -30,7 +30,7 @@ fn flash_needs_no_built_firmware_and_fails_only_at_the_missing_port() {
 
 #[test]
 fn an_image_of_any_robot_is_made_in_an_empty_folder() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     for (name, options) in [("large", &[][..]), ("unequal", &["--only-robot"])] {
         let arguments = [
             &["flash", "image", "--robot", name, "--output", "x.hex"],
@@ -50,28 +50,28 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
             output.starts_with("x.hex: ") && output.contains(&format!("robot {name} ")),
             "{output}"
         );
-        let text = fs::read_to_string(folder.path().join("x.hex")).expect("a file");
+        let text = fs::read_to_string(folder.path().join("x.hex")).expect("the file is readable");
         let pipe_arguments = [&["flash", "image", "--robot", name], options].concat();
         let piped_text = run_in(folder.path(), &pipe_arguments, "").expect_success();
-        assert!(piped_text == text, "a pipe gets another image");
-        // The simulator's loader reads the file, not the code that wrote it.
-        let image = simulated_uno::Image::parse_hex(&text).expect("Intel HEX");
-        let robot = Robot::load(robot_path(name)).expect("a robot");
+        assert!(piped_text == text, "the pipe got another image");
+        // The file is read by the simulator's loader, which shares no code with the writer.
+        let image = simulated_uno::Image::parse_hex(&text).expect("the image is Intel HEX");
+        let robot = Robot::load(robot_path(name)).expect("the robot file is valid");
         let flash = image.flash();
         assert!(flash[ROBOT_START..] == robot.section());
         let is_code = flash[..2] == [0x0c, 0x94];
-        assert_eq!(is_code, options.is_empty(), "a jump at the reset vector");
+        assert_eq!(is_code, options.is_empty(), "the code starts with a jump");
     }
 }
 
 #[test]
-fn a_script_reads_the_content_of_an_image_as_json() {
-    let folder = tempfile::tempdir().expect("a folder");
+fn the_summary_of_an_image_is_printed_as_json() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["flash", "image", "--robot", "large", "--output", "x.hex"];
     let summary =
         run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").expect_success();
-    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
-    let robot = Robot::load(robot_path("large")).expect("a robot");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("the output is JSON");
+    let robot = Robot::load(robot_path("large")).expect("the robot file is valid");
     let hash = robot.firmware().hash();
     assert_eq!(
         summary,
@@ -88,9 +88,9 @@ fn a_script_reads_the_content_of_an_image_as_json() {
 }
 
 #[test]
-fn a_robot_that_is_wrong_gives_no_image() {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("x.toml"), "[servo]\n").expect("a file");
+fn an_invalid_robot_gives_no_image() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    fs::write(folder.path().join("x.toml"), "[servo]\n").expect("the file is written");
     let arguments = ["flash", "image", "--robot", "x.toml", "--output", "x.hex"];
     let message = run_in(folder.path(), &arguments, "").expect_refusal();
     assert!(message.contains("x.toml"), "{message}");
@@ -99,9 +99,9 @@ fn a_robot_that_is_wrong_gives_no_image() {
 
 #[cfg(unix)]
 #[test]
-fn a_port_that_is_not_there_is_named() {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("a.hex"), HEX).expect("a file");
+fn a_missing_port_is_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    fs::write(folder.path().join("a.hex"), HEX).expect("the file is written");
     let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
     let message = run_in(folder.path(), &arguments, "").expect_refusal();
     let expected_start =
@@ -111,8 +111,8 @@ fn a_port_that_is_not_there_is_named() {
 
 #[test]
 fn a_file_that_is_not_an_image_is_refused_before_any_port_is_opened() {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("half.hex"), &HEX[..60]).expect("a file");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    fs::write(folder.path().join("half.hex"), &HEX[..60]).expect("the file is written");
     let arguments = ["flash", "/dev/no-such-port", "--image", "half.hex"];
     let message = run_in(folder.path(), &arguments, "").expect_refusal();
     assert!(

@@ -25,11 +25,11 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
         ("design --search --step 0.1 --top 3 --json", 5),
     ] {
         let arguments = with_paper(arguments);
-        let whole_output = run_line(&arguments, "").expect_success();
-        assert!(whole_output.len() > 100, "{arguments}: {whole_output}");
+        let single_output = run_line(&arguments, "").expect_success();
+        assert!(single_output.len() > 100, "{arguments}: {single_output}");
         let merged_output =
             run_line("merge", compute_parts(&arguments, part_count)).expect_success();
-        assert_eq!(merged_output, whole_output, "{arguments}");
+        assert_eq!(merged_output, single_output, "{arguments}");
     }
 }
 
@@ -37,7 +37,7 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
 fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
     let arguments = with_paper("design --search --step 0.1");
     let parts = compute_parts(&arguments, 2);
-    let (last_part, first_part) = parts.split_once('\n').expect("two lines");
+    let (last_part, first_part) = parts.split_once('\n').expect("the parts are two lines");
     assert_eq!(
         refusal_of("merge", last_part),
         "lizard: part 1/2 is missing"

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::program::{run, scratch_folder};
 
 /// Returns a path at which no file exists.
-fn fresh_path(name: &str) -> PathBuf {
+fn unused_path(name: &str) -> PathBuf {
     let file = scratch_folder().join(name);
     let _ = fs::remove_file(&file);
     file
@@ -14,10 +14,10 @@ fn fresh_path(name: &str) -> PathBuf {
 
 #[test]
 fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
-    let file = fresh_path("robot.xml");
+    let file = unused_path("robot.xml");
     let path = file.display().to_string();
     run(&["model", &path]).expect_success();
-    let text = fs::read_to_string(&file).expect("a file");
+    let text = fs::read_to_string(&file).expect("the file is readable");
     for fragment in [
         "<position name=\"A1\"",
         "<position name=\"A4\"",
@@ -39,7 +39,7 @@ fn a_stream_gets_the_file_and_nothing_else() {
 
 #[test]
 fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
-    let file = fresh_path("wrong.xml");
+    let file = unused_path("wrong.xml");
     let path = file.display().to_string();
     let refusal_of =
         |arguments: &[&str]| run(&[&["model", &path], arguments].concat()).expect_refusal();
@@ -66,12 +66,12 @@ fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
 
 #[test]
 fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
-    let folder = tempfile::tempdir().expect("a folder");
-    for ending in ["urdf", "sdf"] {
-        let file = folder.path().join(format!("new/my.{ending}"));
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    for extension in ["urdf", "sdf"] {
+        let file = folder.path().join(format!("new/my.{extension}"));
         let output = run(&["model", &file.display().to_string()]).expect_success();
         assert!(output.contains("my-meshes"), "{output}");
-        let text = fs::read_to_string(&file).expect("a file");
+        let text = fs::read_to_string(&file).expect("the file is readable");
         let names = text.split("my-meshes/").skip(1);
         let names: Vec<&str> = names
             .filter_map(|rest| rest.split_once(".stl"))
@@ -86,13 +86,13 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
     let file = folder.path().join("my.urdf");
     let address = ["--mesh-address", "package://my_robot/meshes/"];
     run(&[&["model", &file.display().to_string()], &address[..]].concat()).expect_success();
-    let text = fs::read_to_string(&file).expect("a file");
+    let text = fs::read_to_string(&file).expect("the file is readable");
     assert!(text.contains("\"package://my_robot/meshes/link_A1-printed.stl\""));
 }
 
 #[test]
-fn options_that_a_format_lacks_are_refused_and_nothing_is_written() {
-    let folder = tempfile::tempdir().expect("a folder");
+fn options_that_a_format_does_not_support_are_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     for (name, options, expected) in [
         ("a.urfd", vec![], "the ending decides the format"),
         (
@@ -110,6 +110,6 @@ fn options_that_a_format_lacks_are_refused_and_nothing_is_written() {
         let message = run(&[&["model", &file], &options[..]].concat()).expect_refusal();
         assert!(message.contains(expected), "{message}");
     }
-    let remaining_files = folder.path().read_dir().expect("a folder");
+    let remaining_files = folder.path().read_dir().expect("the folder is readable");
     assert_eq!(remaining_files.count(), 0);
 }

@@ -14,7 +14,7 @@ fn run_line_in(folder: &Path, line: &str) -> Outcome {
 
 #[test]
 fn no_command_overwrites_its_input_or_a_robot_file() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let robot = &read_file("robots/paper.toml");
     let session =
@@ -27,16 +27,17 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         ("a.txt", "500 walk\n"),
     ];
     for (name, text) in files {
-        fs::write(folder_path.join(name), text).expect("a file");
+        fs::write(folder_path.join(name), text).expect("the file is written");
     }
-    fs::create_dir(folder_path.join("charts")).expect("a folder");
+    fs::create_dir(folder_path.join("charts")).expect("the folder is created");
     fs::hard_link(
         folder_path.join("my.toml"),
         folder_path.join("charts/top-view.svg"),
     )
-    .expect("another name");
-    fs::hard_link(folder_path.join("my.toml"), folder_path.join("my.urdf")).expect("another name");
-    for (line, file) in [
+    .expect("a hard link is created");
+    fs::hard_link(folder_path.join("my.toml"), folder_path.join("my.urdf"))
+        .expect("a hard link is created");
+    for (line, protected_file) in [
         ("flash image --robot my.toml --output my.toml", "my.toml"),
         (
             "flash image --robot my.toml --output ./x/../my.toml",
@@ -55,7 +56,7 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         ("sim --script a.txt --svg a.txt", "a.txt"),
         ("draw charts charts --robot my.toml", "top-view.svg"),
     ] {
-        fs::create_dir_all(folder_path.join("x")).expect("a folder");
+        fs::create_dir_all(folder_path.join("x")).expect("the folder is created");
         let Outcome {
             code,
             stderr: error,
@@ -63,12 +64,13 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         } = run_line_in(folder_path, line);
         assert_eq!(code, Some(2), "{line}: {error}");
         assert!(
-            error.contains(file) && error.contains("; name another file for the output"),
+            error.contains(protected_file) && error.contains("; name another file for the output"),
             "{line}: {error}"
         );
     }
     for (name, text) in files {
-        let current_text = fs::read_to_string(folder_path.join(name)).expect("a file");
+        let current_text =
+            fs::read_to_string(folder_path.join(name)).expect("the file is readable");
         assert!(current_text == text, "{name} has changed");
     }
     assert!(!folder_path.join("my-meshes").exists());
@@ -76,31 +78,32 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
 
 #[test]
 fn a_new_robot_file_has_a_gait_and_replaces_no_file() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let output = run_line_in(folder_path, "new my.toml").expect_success();
     assert!(output.contains("lizard gaits --robot my.toml"), "{output}");
     let file = folder_path.join("my.toml");
-    let text = fs::read_to_string(&file).expect("a file");
+    let text = fs::read_to_string(&file).expect("the file is readable");
     assert!(
         text.contains("\n[gait.walk]\n") && text.contains("# "),
         "{text}"
     );
     run_line_in(folder_path, "gaits --robot my.toml").expect_success();
-    fs::write(&file, "mine").expect("a file");
+    fs::write(&file, "mine").expect("the file is written");
     let refusal = run_line_in(folder_path, "new my.toml").expect_refusal();
     assert_eq!(
         refusal,
         "lizard: my.toml already exists and is left as it is; name a new file"
     );
-    assert_eq!(fs::read_to_string(&file).expect("a file"), "mine");
+    let current_text = fs::read_to_string(&file).expect("the file is readable");
+    assert_eq!(current_text, "mine");
     let outcome = run_line_in(folder_path, "new no/folder/my.toml");
     assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
 }
 
 #[test]
 fn flash_image_creates_the_folders_of_its_output() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let line = "flash image --robot large --output new/folder/x.hex";
     run_line_in(folder.path(), line).expect_success();
     assert!(folder.path().join("new/folder/x.hex").is_file());
@@ -109,14 +112,15 @@ fn flash_image_creates_the_folders_of_its_output() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_command_that_is_killed_while_it_writes_leaves_no_file() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     // The system kills a program that writes more than 8 KiB into a file.
-    let line = "ulimit -c 0 -f 8; exec \"$0\" flash image --robot large --output x.hex";
+    let script = "ulimit -c 0 -f 8; exec \"$0\" flash image --robot large --output x.hex";
     let mut bash = Command::new("bash");
-    bash.args(["-c", line, env!("CARGO_BIN_EXE_lizard")])
+    bash.args(["-c", script, env!("CARGO_BIN_EXE_lizard")])
         .current_dir(folder.path());
     let output = LIMIT.output(&mut bash, b"").expect("bash runs");
     assert_eq!(output.status.code(), None, "no signal: {output:?}");
-    let remaining_files: Vec<_> = folder.path().read_dir().expect("a folder").collect();
+    let entries = fs::read_dir(folder.path()).expect("the folder is readable");
+    let remaining_files: Vec<_> = entries.collect();
     assert!(remaining_files.is_empty(), "{remaining_files:?}");
 }

@@ -11,7 +11,7 @@ fn make_parts(folder: &Path, arguments: &[&str]) -> Outcome {
 }
 
 /// Returns a path at which no folder exists.
-fn fresh_path(name: &str) -> PathBuf {
+fn unused_path(name: &str) -> PathBuf {
     let folder = scratch_folder().join(name);
     let _ = fs::remove_dir_all(&folder);
     folder
@@ -20,13 +20,13 @@ fn fresh_path(name: &str) -> PathBuf {
 /// Writes a changed copy of the paper's robot to a file of this name, and returns its path.
 fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String {
     let file = scratch_folder().join(name);
-    fs::write(&file, change(read_file("robots/paper.toml"))).expect("a file");
+    fs::write(&file, change(read_file("robots/paper.toml"))).expect("the file is written");
     file.display().to_string()
 }
 
 #[test]
 fn a_folder_holds_everything_to_build_the_robot() {
-    let folder = fresh_path("parts-all");
+    let folder = unused_path("parts-all");
     make_parts(&folder, &["--robot", &robot_path("paper")]).expect_success();
     for file in [
         "step/plate.step",
@@ -47,7 +47,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
     ] {
         assert!(folder.join(file).is_file(), "{file}");
     }
-    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
+    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
     assert!(guide.contains("## 9. Struts\n"), "{guide}");
     assert!(
         guide.contains("Instead of the struts, 4 x strut,"),
@@ -58,20 +58,21 @@ fn a_folder_holds_everything_to_build_the_robot() {
         "{guide}"
     );
     for line in guide.lines().filter(|line| line.starts_with("![")) {
-        let (_, file) = line.trim_end_matches(')').rsplit_once('(').expect("a file");
+        let link = line.trim_end_matches(')').rsplit_once('(');
+        let (_, file) = link.expect("the line names a file");
         assert!(folder.join("guide").join(file).is_file(), "{file}");
     }
 }
 
 #[test]
 fn one_corner_can_be_printed_first() {
-    let folder = fresh_path("parts-corner");
+    let folder = unused_path("parts-corner");
     let list = make_parts(
         &folder,
         &["--robot", &robot_path("paper"), "--corner", "--json"],
     )
     .expect_json();
-    let list = list.as_array().expect("a list");
+    let list = list.as_array().expect("the value is an array");
     let names: Vec<_> = list
         .iter()
         .filter_map(|part| part["part"].as_str())
@@ -96,12 +97,12 @@ fn one_corner_can_be_printed_first() {
 }
 
 #[test]
-fn a_wrong_weight_is_reported_with_the_right_one() {
+fn a_wrong_weight_is_reported_with_the_correct_one() {
     let light_robot = write_changed_paper("light.toml", |text| {
         text.replace("mass = 435.0", "mass = 280.0")
     });
     let summary_of =
-        |robot: &str| make_parts(&fresh_path("parts-light"), &["--robot", robot]).expect_success();
+        |robot: &str| make_parts(&unused_path("parts-light"), &["--robot", robot]).expect_success();
     let light_summary = summary_of(&light_robot);
     assert!(
         light_summary.contains("The parts weigh 435 g")
@@ -113,7 +114,7 @@ fn a_wrong_weight_is_reported_with_the_right_one() {
 
 #[test]
 fn struts_may_have_springs() {
-    let folder = fresh_path("parts-strut");
+    let folder = unused_path("parts-strut");
     let robot = write_changed_paper("strut.toml", |text| {
         text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
     });
@@ -125,7 +126,7 @@ fn struts_may_have_springs() {
     ] {
         assert!(folder.join(file).is_file(), "{file}");
     }
-    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("a guide");
+    let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
     assert!(guide.contains("## 9. Struts and springs"), "{guide}");
     for phrase in [
         "Instead of the struts, 4 x rigid strut,",
@@ -140,7 +141,7 @@ fn struts_may_have_springs() {
 
 #[test]
 fn a_robot_whose_parts_overlap_is_refused_and_nothing_is_written() {
-    let folder = fresh_path("parts-refused");
+    let folder = unused_path("parts-refused");
     let robot = write_changed_paper("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
     let outcome = make_parts(&folder, &["--robot", &robot]);
     assert_eq!(outcome.code, Some(1));

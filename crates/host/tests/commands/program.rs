@@ -23,11 +23,10 @@ impl Outcome {
 
     /// Checks that the run succeeded, and parses its standard output as one JSON value.
     pub fn expect_json(self) -> serde_json::Value {
-        serde_json::from_str(&self.expect_success()).expect("JSON")
+        serde_json::from_str(&self.expect_success()).expect("the output is JSON")
     }
 
-    /// Checks that the run refused its input and wrote nothing to standard output, and returns its
-    /// message.
+    /// Checks that the run refused its input and wrote nothing to standard output, and returns its message.
     pub fn expect_refusal(self) -> String {
         assert_eq!(self.code, Some(2), "{}", self.stderr);
         assert_eq!(self.stdout, "", "output before the refusal");
@@ -46,7 +45,7 @@ pub fn read_file(path: &str) -> String {
         .unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The folder for the files of all tests.
+/// The scratch folder, which all tests share.
 pub fn scratch_folder() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
 }
@@ -79,7 +78,7 @@ impl RobotFile {
             text = text.replacen(old, new, 1);
         }
         let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
-        std::fs::write(&path, text).expect("a temporary file");
+        std::fs::write(&path, text).expect("the file is written");
         Self(path)
     }
 
@@ -101,7 +100,7 @@ pub fn run_line(line: &str, input: impl AsRef<[u8]>) -> Outcome {
     run_in(&repo_root(), &arguments, input)
 }
 
-/// Runs the program in the folder for the files of all tests.
+/// Runs the program in the scratch folder without standard input.
 pub fn run(arguments: &[&str]) -> Outcome {
     run_in(scratch_folder(), arguments, "")
 }
@@ -112,10 +111,10 @@ pub fn run_in(folder: &Path, arguments: &[&str], input: impl AsRef<[u8]>) -> Out
     command.args(arguments).current_dir(folder);
     // A program that stops at bad input closes its standard input early, which is not an error here.
     let output = LIMIT.output(&mut command, input.as_ref());
-    let output = output.expect("lizard ends");
+    let output = output.expect("lizard runs and exits");
     Outcome {
         code: output.status.code(),
-        stdout: String::from_utf8(output.stdout).expect("UTF-8"),
-        stderr: String::from_utf8(output.stderr).expect("UTF-8"),
+        stdout: String::from_utf8(output.stdout).expect("the output is UTF-8"),
+        stderr: String::from_utf8(output.stderr).expect("the output is UTF-8"),
     }
 }

@@ -12,7 +12,7 @@ struct Board {
 
 impl Board {
     fn new() -> Self {
-        let robot = Robot::parse(&read_file("robots/paper.toml")).expect("robots/paper.toml");
+        let robot = Robot::parse(&read_file("robots/paper.toml")).expect("the robot file is valid");
         Self {
             running: RunningRobot::power_on(*robot.firmware()),
         }
@@ -23,8 +23,7 @@ impl Board {
         self.running.run_frames(frames)
     }
 
-    /// Sends a line and returns the lines that the board prints in the next 100 frames; by then
-    /// all motion has ended.
+    /// Sends a line and returns the lines that the board prints in the next 100 frames; by then all motion has ended.
     fn send(&mut self, line: &str) -> Vec<String> {
         let mut answer = self.running.send(format!("{line}\r").as_bytes());
         answer.extend(self.run(100));
@@ -32,8 +31,7 @@ impl Board {
     }
 }
 
-/// True if a line is as the page shows it; the `...` at the end of a page's line stands for any
-/// text.
+/// True if a line is as the page shows it; `...` at the end of a page's line stands for any text.
 fn matches_page(line: &str, page_line: &str) -> bool {
     page_line
         .strip_suffix("...")
@@ -52,10 +50,10 @@ fn every_line_of_the_quickstart_is_answered_as_the_page_shows() {
     }
     let mut line_count = 0;
     for block in page.split("```text\n").skip(1) {
-        let block = block.split("```").next().expect("a closed block");
+        let block = block.split("```").next().expect("the block has a text");
         for exchange in block.split("> ").skip(1) {
             let mut page_lines = exchange.lines();
-            let line = page_lines.next().expect("a line");
+            let line = page_lines.next().expect("a line follows the prompt");
             let page_lines: Vec<&str> = page_lines.collect();
             let answer = board.send(line);
             let is_as_shown = answer.len() == page_lines.len()
@@ -74,12 +72,13 @@ fn every_line_of_the_quickstart_is_answered_as_the_page_shows() {
 }
 
 #[test]
-fn every_message_in_the_troubleshooting_table_is_one_of_the_firmware() {
+fn every_message_in_the_troubleshooting_table_is_printed_by_the_firmware() {
     let (page, messages) = (
         read_file("docs/quickstart.md"),
         read_file("crates/core/src/console/text.rs"),
     );
-    let (_, table) = page.split_once("## Troubleshooting").expect("a table");
+    let table = page.split_once("## Troubleshooting");
+    let (_, table) = table.expect("the page has a troubleshooting table");
     let mut codes = [false; 10];
     let mut row_count = 0;
     for row in table.lines().filter(|line| line.starts_with('|')) {
@@ -87,7 +86,7 @@ fn every_message_in_the_troubleshooting_table_is_one_of_the_firmware() {
         for quoted in row.split('`').skip(1).step_by(2) {
             let answer = if let Some(refusal) = quoted.strip_prefix("err ") {
                 let (code, reason) = refusal.split_at(1);
-                codes[code.parse::<usize>().expect("a code")] = true;
+                codes[code.parse::<usize>().expect("a refusal has a code")] = true;
                 reason
             } else if quoted.starts_with("# ") {
                 quoted
@@ -98,7 +97,7 @@ fn every_message_in_the_troubleshooting_table_is_one_of_the_firmware() {
                 .split("...")
                 .map(|phrase| phrase.trim_matches([' ', ',']))
             {
-                assert!(messages.contains(phrase), "nothing says {phrase:?}");
+                assert!(messages.contains(phrase), "nothing prints {phrase:?}");
             }
         }
     }

@@ -29,7 +29,7 @@ fn a_file_that_is_not_firmware_is_refused() {
 }
 
 #[test]
-fn a_wrong_script_names_file_and_line() {
+fn the_refusal_of_an_invalid_script_names_file_and_line() {
     let path = scratch_folder().join("wrong-script.txt");
     std::fs::write(&path, "100 walk\nsoon stop\n").expect("the script is written");
     let path = path.display().to_string();
@@ -52,7 +52,7 @@ fn a_script_that_never_ends_is_refused() {
 }
 
 #[test]
-fn an_unknown_gait_lists_those_of_the_paper_robot() {
+fn the_refusal_of_an_unknown_gait_lists_the_gaits_of_the_robot() {
     let message = refusal_of(&["sim", "--robot", &robot_path("paper"), "--gait", "gallop"]);
     assert!(
         message.contains("no gait `gallop`; it has stand, walk, trot"),
@@ -70,7 +70,7 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
         .find(|block| block.starts_with("[input.button]"));
     let patrol = patrol
         .and_then(|block| block.split("```").next())
-        .expect("a patrol");
+        .expect("the page has a patrol");
     let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
     std::fs::write(&patrol_path, text).expect("the robot is written");
     std::fs::write(&script, "1000 patrol\n").expect("the script is written");
@@ -91,11 +91,11 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
         run(&all_arguments).expect_json()
     };
     let wait_times_ms_of = |report: &serde_json::Value, input: &str| -> Vec<f64> {
-        let lines = report["dialogue"].as_array().expect("lines");
+        let lines = report["dialogue"].as_array().expect("there are lines");
         let text = format!("# waiting for {input}");
         let input_lines = lines.iter().filter(|line| line["text"] == text.as_str());
         input_lines
-            .map(|line| line["ms"].as_f64().expect("a time"))
+            .map(|line| line["ms"].as_f64().expect("the value is a number"))
             .collect()
     };
     let pressed_report = simulate(&["button@2", "nose@3-3.5"]);

@@ -9,7 +9,7 @@ fn find_object(line: &str, key: &str, name: &str) -> Value {
     let output = run_line(line, "").expect_success();
     let mut objects = output
         .lines()
-        .map(|line| serde_json::from_str::<Value>(line).expect("JSON"));
+        .map(|line| serde_json::from_str::<Value>(line).expect("the output is JSON"));
     objects.find(|object| object[key] == name).expect(line)
 }
 
@@ -40,7 +40,7 @@ fn a_round_of_a_routine_moves_the_robot_as_lizard_gaits_predicts_for_the_same_se
         component_of(&tour["predicted"], "turn") - component_of(&tour["by_servos"], "turn");
     assert!(
         lost_turn_deg > 1.0,
-        "real servos turn the robot less than ideal servos: {lost_turn_deg}"
+        "real servos must turn the robot less than ideal servos: {lost_turn_deg}"
     );
     // Two feet pull against the other two, so the distance is undetermined, and neither command may state a distance.
     let gaze = find_object(&robot.add_option_to("gaits --json"), "routine", "gaze");
@@ -85,7 +85,7 @@ fn the_firmware_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
         assert_eq!(run_speed >= 90.0, is_fast, "{name}: {run_speed} mm/s");
         assert!(
             left_deg > 9.0 && arc_deg > 6.0,
-            "{name} turns: {left_deg} and {arc_deg} deg"
+            "{name} turns by only {left_deg} and {arc_deg} deg"
         );
     }
 }

@@ -18,8 +18,8 @@ fn refusal_of(arguments: &[&str]) -> String {
 /// The first words of the lines under a heading of `lizard --help`.
 fn first_words_under(help: &str, heading: &str) -> Vec<String> {
     let (_, rest) = help.split_once(&format!("\n{heading}:\n")).expect(heading);
-    let (section, _) = rest.split_once("\n\n").expect("the section's end");
-    let first_word_of = |line: &str| line.split_whitespace().next().expect("a word").to_owned();
+    let (section, _) = rest.split_once("\n\n").expect(heading);
+    let first_word_of = |line: &str| line.split_whitespace().next().expect(heading).to_owned();
     section.lines().map(first_word_of).collect()
 }
 
@@ -55,7 +55,7 @@ fn terms_of_robotics_are_aliases_of_the_commands() {
     );
     let help = output_of(&["help"]);
     let line = help.lines().find(|line| line.contains(" console "));
-    assert!(line.expect("console").contains("[also: monitor]"));
+    assert!(line.is_some_and(|line| line.contains("[also: monitor]")));
 }
 
 #[test]
@@ -94,9 +94,9 @@ fn a_command_of_the_previous_version_still_works_and_names_the_new_one() {
 #[test]
 fn a_word_of_20_000_letters_is_not_repeated_in_full() {
     let long_word = "x".repeat(20_000);
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let robot = folder.path().join("x.toml");
-    std::fs::write(&robot, format!("name = {long_word}\n")).expect("a file");
+    std::fs::write(&robot, format!("name = {long_word}\n")).expect("the file is written");
     let robot = robot.display().to_string();
     for arguments in [
         &[long_word.as_str()][..],
@@ -166,7 +166,7 @@ fn bash_completions(script: &Path, typed_line: &str, index: usize) -> Vec<String
 #[cfg(unix)]
 fn bash_completes_commands_and_options() {
     let script = scratch_folder().join("lizard.bash");
-    std::fs::write(&script, output_of(&["completions", "bash"])).expect("a file");
+    std::fs::write(&script, output_of(&["completions", "bash"])).expect("the file is written");
     assert_eq!(bash_completions(&script, "lizard calib", 1), ["calibrate"]);
     assert_eq!(
         bash_completions(&script, "lizard twin --ro", 2),
@@ -197,7 +197,7 @@ fn bash_completes_commands_and_options() {
 
 #[test]
 fn every_command_has_a_manual_page_that_names_its_options() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let pages = folder.path().join("man1");
     output_of(&["completions", "man", &pages.display().to_string()]);
     let help = output_of(&["--help"]);
@@ -210,7 +210,7 @@ fn every_command_has_a_manual_page_that_names_its_options() {
     ] {
         for name in first_words_under(&help, heading) {
             let page = std::fs::read_to_string(pages.join(format!("lizard-{name}.1")));
-            let page = page.expect("a manual page");
+            let page = page.expect("the manual page is readable");
             assert!(page.contains(&format!(".TH lizard-{name} 1")), "{page}");
             // In a manual page a hyphen that is to be typed is written `\-`.
             assert!(page.contains(r"\-\-help"), "{page}");
@@ -224,15 +224,15 @@ fn every_command_has_a_manual_page_that_names_its_options() {
         );
     }
     assert!(count > 13, "{count}");
-    let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("a file");
+    let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("the file is readable");
     assert!(main_page.contains("lizard\\-console(1)"), "{main_page}");
 }
 
 #[test]
 fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
     let ports: serde_json::Value =
-        serde_json::from_str(&output_of(&["info", "ports", "--json"])).expect("JSON");
-    let ports = ports.as_array().expect("an array");
+        serde_json::from_str(&output_of(&["info", "ports", "--json"])).expect("the output is JSON");
+    let ports = ports.as_array().expect("the value is an array");
     let text = output_of(&["info", "ports"]);
     assert_eq!(
         text.contains("no USB serial port"),

@@ -6,7 +6,7 @@ use crate::fixture::{Uno, moving_gait, run};
 
 #[test]
 fn a_script_by_radio_uses_deadman_so_the_robot_stops_when_the_script_ends() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start_by_radio(folder.path());
     // The radio loses lines, so the script is repeated until all answers have come.
     let send_script = |lines: &str, expected: &[&str]| {

@@ -13,8 +13,8 @@ use lizard_time_limit::LIMIT;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-/// The path of the simulated board's robot, as in the other tests: that in `LIZARD_ROBOT`,
-/// relative to the repository's root, or robot.toml.
+/// The path of the simulated board's robot, as in the other tests: that in `LIZARD_ROBOT`, relative to the repository's
+/// root, or robot.toml.
 fn robot_path() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let environment_path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
@@ -92,7 +92,7 @@ impl Uno {
     }
 
     fn has_ended(&mut self) -> bool {
-        self.child.try_wait().expect("a child").is_some()
+        self.child.try_wait().expect("the wait succeeds").is_some()
     }
 }
 
@@ -107,20 +107,19 @@ impl Drop for Uno {
 /// Opens a pseudo terminal; returns the test's side, the program's side, and its path.
 pub fn open_terminal() -> (File, OwnedFd, PathBuf) {
     let test_side = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC);
-    let test_side = test_side.expect("a pseudo terminal");
-    unlockpt(&test_side).expect("an unlocked terminal");
-    let path = ptsname(&test_side, Vec::new()).expect("a name");
+    let test_side = test_side.expect("a pseudo terminal is opened");
+    unlockpt(&test_side).expect("the terminal is unlocked");
+    let path = ptsname(&test_side, Vec::new()).expect("the terminal has a name");
     let path = PathBuf::from(path.to_string_lossy().into_owned());
     let program_side = File::options()
         .read(true)
         .write(true)
         .open(&path)
-        .expect("a terminal");
+        .expect("the program's side is opened");
     (File::from(test_side), program_side.into(), path)
 }
 
-/// Opens a pseudo terminal, 100 columns wide; returns the test's side and the program's
-/// side.
+/// Opens a pseudo terminal, 100 columns wide; returns the test's side and the program's side.
 pub fn open_wide_terminal() -> (File, OwnedFd) {
     let (test_side, program_side, _) = open_terminal();
     let size = Winsize {
@@ -129,7 +128,7 @@ pub fn open_wide_terminal() -> (File, OwnedFd) {
         ws_xpixel: 0,
         ws_ypixel: 0,
     };
-    tcsetwinsize(&program_side, size).expect("a size");
+    tcsetwinsize(&program_side, size).expect("the size is set");
     (test_side, program_side)
 }
 
@@ -145,14 +144,14 @@ pub struct TerminalSession {
 impl TerminalSession {
     pub fn start(mut command: Command) -> Self {
         let (test_side, program_side) = open_wide_terminal();
-        let copy_stdio = || Stdio::from(program_side.try_clone().expect("a copy"));
+        let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
         let child = command
             .stdin(copy_stdio())
             .stdout(copy_stdio())
             .stderr(copy_stdio())
             .spawn()
             .expect("the program starts");
-        let mut screen_reader = test_side.try_clone().expect("a copy");
+        let mut screen_reader = test_side.try_clone().expect("the clone succeeds");
         let (sender, receiver) = mpsc::channel();
         std::thread::spawn(move || {
             let mut bytes = [0; 4096];
@@ -170,8 +169,9 @@ impl TerminalSession {
         }
     }
 
+    /// Types keys into the terminal.
     pub fn press(&mut self, keys: &str) {
-        self.keys.write_all(keys.as_bytes()).expect("keys");
+        self.keys.write_all(keys.as_bytes()).expect("keys are sent");
     }
 
     /// Reads the output so far; returns true once the program has closed the terminal.
@@ -184,8 +184,8 @@ impl TerminalSession {
         }
     }
 
-    /// Waits until the program has printed this text after that of the previous wait. Panics if
-    /// the program ends first or the time limit passes.
+    /// Waits until the program has printed this text after that of the previous wait. Panics if the program ends first
+    /// or the time limit passes.
     pub fn wait_for(&mut self, expected: &str) {
         let (mut position, mut has_ended) = (None, false);
         LIMIT.wait_for(|| {
@@ -195,17 +195,18 @@ impl TerminalSession {
         });
         let Some(start) = position else {
             panic!(
-                "waited up to {LIMIT} for `{expected}`, but {:?}",
+                "waited up to {LIMIT} for `{expected}`, but the program printed {:?}",
                 self.new_text
             );
         };
         self.new_text.drain(..start + expected.len());
     }
 
+    /// Waits for the program to exit and returns its exit code.
     pub fn exit_code(mut self) -> Option<i32> {
         LIMIT
             .wait_for_exit(&mut self.child)
-            .expect("an exit")
+            .expect("the program exits")
             .code()
     }
 }
@@ -238,9 +239,10 @@ impl Device {
         }
     }
 
+    /// Stops the device and waits for the end of its thread.
     pub fn stop(self) {
         drop(self.stop_sender);
         let join_result = LIMIT.within("the end of the device", || self.thread.join());
-        join_result.expect("no panic");
+        join_result.expect("the device does not panic");
     }
 }

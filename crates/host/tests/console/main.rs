@@ -1,5 +1,5 @@
-//! Tests of `lizard console` and the other commands for a board as a user runs them, with a simulated
-//! UNO at a pseudo terminal. They run in real time, so each test takes a few seconds.
+//! Tests of `lizard console` and the other commands for a board as a user runs them, with a simulated UNO at a pseudo
+//! terminal. The tests run in real time, so each takes a few seconds.
 #![cfg(target_os = "linux")]
 
 mod by_radio;
@@ -16,10 +16,10 @@ use fixture::{Device, TerminalSession, Uno, lizard_command, moving_gait, open_wi
 
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["console", "--sim"];
     let (out, error, code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
-    assert_eq!(code, Some(1), "a line was refused: {error}");
+    assert_eq!(code, Some(1), "code of a refused line: {error}");
     assert!(
         error.ends_with(
             "lizard: the robot did not accept 1 of 3 lines, the first `fly`: err 1 unknown command, \
@@ -38,24 +38,24 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
         ]
     );
     assert!(out.contains("\n# A4 trim 0.00 limit "), "{out}");
-    assert!(error.contains("(a simulated UNO)"), "which port: {error}");
+    assert!(error.contains("(a simulated UNO)"), "no port name: {error}");
 
     let (_, error, code) = run(folder.path(), &arguments, "cal\nstop\n");
-    assert_eq!(code, Some(0), "all lines were taken: {error}");
+    assert_eq!(code, Some(0), "code of accepted lines: {error}");
 }
 
 #[test]
 fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_changes_nothing() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
     let port = uno.port();
     let (_, error, code) = run(folder_path, &["calibrate", "backup", "a.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
-    let first_text = fs::read_to_string(folder_path.join("a.toml")).expect("a file");
+    let first_text = fs::read_to_string(folder_path.join("a.toml")).expect("the file is readable");
 
     let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
-    fs::write(folder_path.join("b.toml"), &changed_text).expect("a file");
+    fs::write(folder_path.join("b.toml"), &changed_text).expect("the file is written");
     let (out, error, code) = run(folder_path, &["calibrate", "restore", "b.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
     assert!(
@@ -64,8 +64,9 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
     );
 
     let scale_line = first_text.lines().find(|line| line.starts_with("scale = "));
-    let refused_text = changed_text.replacen(scale_line.expect("A1 has one"), "scale = 99.0", 1);
-    fs::write(folder_path.join("c.toml"), refused_text).expect("a file");
+    let refused_text =
+        changed_text.replacen(scale_line.expect("A1 has a scale"), "scale = 99.0", 1);
+    fs::write(folder_path.join("c.toml"), refused_text).expect("the file is written");
     let (out, error, code) = run(folder_path, &["calibrate", "restore", "c.toml", &port], "");
     assert_eq!(code, Some(1), "{error}");
     assert!(
@@ -76,7 +77,7 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
 
     let (_, error, code) = run(folder_path, &["calibrate", "backup", "d.toml", &port], "");
     assert_eq!(code, Some(0), "{error}");
-    let last_text = fs::read_to_string(folder_path.join("d.toml")).expect("a file");
+    let last_text = fs::read_to_string(folder_path.join("d.toml")).expect("the file is readable");
     assert_eq!(
         last_text, changed_text,
         "the saved calibration after a reset"
@@ -85,7 +86,7 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
 
 #[test]
 fn info_reports_the_firmware_and_the_settings_of_a_board_and_changes_nothing() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
     let port = uno.port();
@@ -98,7 +99,7 @@ fn info_reports_the_firmware_and_the_settings_of_a_board_and_changes_nothing() {
     for _ in 0..2 {
         let (out, error, code) = run(folder_path, &["info", "--json", &port], "");
         assert_eq!(code, Some(0), "{error}");
-        let board: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+        let board: serde_json::Value = serde_json::from_str(&out).expect("the output is JSON");
         assert_eq!(board["firmware"], env!("CARGO_PKG_VERSION"));
         assert_eq!(board["robot"]["hash"].as_str().map(str::len), Some(8));
         assert_eq!(board["fault"], serde_json::Value::Null);
@@ -112,54 +113,54 @@ fn info_reports_the_firmware_and_the_settings_of_a_board_and_changes_nothing() {
 
 #[test]
 fn a_session_at_a_terminal_has_line_editing_and_survives_an_unplugged_board() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
-    let mut person =
+    let mut session =
         TerminalSession::start(lizard_command(folder.path(), &["console", &uno.port()]));
-    person.wait_for("# lizard ");
-    person.wait_for("no fault");
+    session.wait_for("# lizard ");
+    session.wait_for("no fault");
     // Ctrl-A moves to the start of the line, where the forgotten letter is added.
-    person.press("top\x01s\r");
-    person.wait_for("> stop");
-    person.wait_for("ok stop");
-    person.wait_for("stop  A1..A4");
-    person.press("\x1b[A\r");
-    person.wait_for("ok stop");
+    session.press("top\x01s\r");
+    session.wait_for("> stop");
+    session.wait_for("ok stop");
+    session.wait_for("stop  A1..A4");
+    session.press("\x1b[A\r");
+    session.wait_for("ok stop");
     drop(uno);
-    person.wait_for("the port is gone: the board was unplugged, or its cable is loose");
-    person.wait_for("waiting for the board");
+    session.wait_for("the port is gone: the board was unplugged, or its cable is loose");
+    session.wait_for("waiting for the board");
     let _uno = Uno::start(folder.path());
-    person.wait_for("is back: # lizard ");
-    person.press("stand\r");
-    person.wait_for("ok stand");
-    person.press("\x04");
-    assert_eq!(person.exit_code(), Some(0));
+    session.wait_for("is back: # lizard ");
+    session.press("stand\r");
+    session.wait_for("ok stand");
+    session.press("\x04");
+    assert_eq!(session.exit_code(), Some(0));
     let history = fs::read_to_string(folder.path().join("lizard/history"));
-    assert_eq!(history.expect("a history"), "stop\nstand\n");
+    assert_eq!(history.expect("the history is readable"), "stop\nstand\n");
 }
 
 #[test]
-fn calibrate_shows_a_step_for_each_key_and_leaves_the_robot_as_it_was() {
-    let folder = tempfile::tempdir().expect("a folder");
+fn calibrate_advances_a_step_per_key_and_leaves_a_cancelled_calibration_unchanged() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["calibrate", "--sim"];
-    let mut person = TerminalSession::start(lizard_command(folder.path(), &arguments));
-    person.wait_for("before you begin");
-    person.press("\r");
-    person.wait_for("fit the horns");
-    person.press("\r");
-    person.wait_for("which way does A1");
-    person.press(" ");
-    person.wait_for("A1 has moved");
-    person.press("n");
-    person.wait_for("The sign of A1 is `");
-    person.press("q");
-    person.wait_for("cancelled: the robot keeps its old calibration");
-    assert_eq!(person.exit_code(), Some(0));
+    let mut session = TerminalSession::start(lizard_command(folder.path(), &arguments));
+    session.wait_for("before you begin");
+    session.press("\r");
+    session.wait_for("fit the horns");
+    session.press("\r");
+    session.wait_for("which way does A1");
+    session.press(" ");
+    session.wait_for("A1 has moved");
+    session.press("n");
+    session.wait_for("The sign of A1 is `");
+    session.press("q");
+    session.wait_for("cancelled: the robot keeps its old calibration");
+    assert_eq!(session.exit_code(), Some(0));
 }
 
 #[test]
 fn a_recorded_session_is_drawn_and_summarized() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let mut child = lizard_command(folder_path, &["console", "--record", "a.jsonl", "--sim"])
         .stdin(Stdio::piped())
@@ -167,16 +168,17 @@ fn a_recorded_session_is_drawn_and_summarized() {
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts");
-    let mut stdin = child.stdin.take().expect("an input");
-    stdin.write_all(b"speed 50\nfly\n").expect("a reader");
+    let mut stdin = child.stdin.take().expect("standard input is piped");
+    let lines = b"speed 50\nfly\n";
+    stdin.write_all(lines).expect("the program reads its input");
     let file = folder_path.join("a.jsonl");
     LIMIT.expect("a refusal and a second of poses in the file", || {
         let recording = fs::read_to_string(&file).unwrap_or_default();
         recording.contains(r#""answer":"err "#) && recording.matches(r#""pose":"#).count() > 50
     });
     drop(stdin);
-    let status = LIMIT.wait_for_exit(&mut child).expect("an exit");
-    assert_eq!(status.code(), Some(1), "a line was refused");
+    let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
+    assert_eq!(status.code(), Some(1), "code for a refused line");
 
     let (out, error, code) = run(
         folder_path,
@@ -193,7 +195,7 @@ fn a_recorded_session_is_drawn_and_summarized() {
         "{out}"
     );
     assert!(out.contains("trouble     none\n"), "{out}");
-    let picture = fs::read_to_string(folder_path.join("a.svg")).expect("a picture");
+    let picture = fs::read_to_string(folder_path.join("a.svg")).expect("the file is readable");
     // If the machine pauses for a second, all four curves have a gap.
     let curves = picture.matches("<polyline").count();
     assert!(
@@ -212,7 +214,7 @@ fn a_recorded_session_is_drawn_and_summarized() {
 
 #[test]
 fn a_port_that_another_program_has_open_is_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
     let mut other_session =
         TerminalSession::start(lizard_command(folder.path(), &["console", &uno.port()]));
@@ -231,7 +233,7 @@ fn a_port_that_another_program_has_open_is_refused() {
 
 #[test]
 fn a_board_that_is_not_a_lizard_is_reported_with_its_output() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let device = Device::start(|terminal| {
         // Writing fails while no program has the port open.
         let _ = terminal.write_all(b"Grbl 1.1h ['$' for help]\r\n");
@@ -247,13 +249,13 @@ fn a_board_that_is_not_a_lizard_is_reported_with_its_output() {
     assert!(error.contains(expected), "{error}");
     assert!(
         !folder.path().join("a.toml").exists(),
-        "nothing half written"
+        "no incomplete file may remain"
     );
 }
 
 #[test]
 fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let mut received_bytes: Vec<u8> = Vec::new();
     let device = Device::start(move |terminal| {
         let mut bytes = [0; 64];
@@ -273,11 +275,11 @@ fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
 }
 
 #[test]
-fn wrong_input_is_refused_with_a_message() {
-    let folder = tempfile::tempdir().expect("a folder");
+fn invalid_input_is_refused_with_a_message() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
-    fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("a file");
-    fs::write(folder_path.join("other.toml"), "[links]\nl0 = 20.0\n").expect("a file");
+    fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("the file is written");
+    fs::write(folder_path.join("other.toml"), "[links]\nl0 = 20.0\n").expect("the file is written");
     let refusal_of = |arguments: &[&str]| {
         let (out, error, code) = run(folder_path, arguments, "");
         assert_eq!(out, "");
@@ -317,9 +319,9 @@ fn wrong_input_is_refused_with_a_message() {
 
 #[test]
 fn the_link_to_a_simulated_board_replaces_no_other_file_and_is_removed_with_the_board() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
-    std::os::unix::fs::symlink("a-file", &other_link).expect("a link");
+    std::os::unix::fs::symlink("a-file", &other_link).expect("the link is created");
     let name = other_link.display().to_string();
     let (_, error, code) = run(folder.path(), &["sim", "--pty", &name], "");
     assert_eq!(
@@ -328,12 +330,12 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_is_removed_with_the_
     );
     assert_eq!(code, Some(2));
     assert_eq!(
-        fs::read_link(&other_link).expect("a link"),
+        fs::read_link(&other_link).expect("the link is readable"),
         Path::new("a-file")
     );
 
     // A killed run leaves a broken link behind.
-    std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("a link");
+    std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("the link is created");
     let name = board_link.display().to_string();
     let mut child = lizard_command(folder.path(), &["sim", "--pty", &name])
         .stdout(Stdio::null())
@@ -341,123 +343,126 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_is_removed_with_the_
         .expect("the program starts");
     LIMIT.expect("a port at the end of the link", || board_link.exists());
     let id = rustix::process::Pid::from_child(&child);
-    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("a process");
-    let status = LIMIT.wait_for_exit(&mut child).expect("an exit");
+    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("the process exists");
+    let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
     let signal = std::os::unix::process::ExitStatusExt::signal(&status);
     assert_eq!(signal, Some(15), "not ended by SIGTERM");
-    assert!(!board_link.is_symlink(), "the link is gone");
+    assert!(!board_link.is_symlink(), "the link must be removed");
 }
 
 #[test]
 fn a_picture_is_not_printed_to_a_terminal() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut person = TerminalSession::start(lizard_command(folder.path(), &["draw", "--wiring"]));
-    person.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
-    assert!(!person.new_text.contains("<svg"));
-    assert_eq!(person.exit_code(), Some(2));
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    let mut session = TerminalSession::start(lizard_command(folder.path(), &["draw", "--wiring"]));
+    session.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
+    assert!(!session.new_text.contains("<svg"));
+    assert_eq!(session.exit_code(), Some(2));
 }
 
 /// The state of a process, as `ps` prints it: S for asleep, R for running, T for stopped.
 fn process_state(child: &Child) -> char {
-    let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).expect("a process");
-    let (_, rest) = stat.rsplit_once(") ").expect("a process name");
-    rest.chars().next().expect("a letter")
+    let path = format!("/proc/{}/stat", child.id());
+    let stat = fs::read_to_string(path).expect("the process exists");
+    let (_, rest) = stat.rsplit_once(") ").expect("a state follows the name");
+    rest.chars().next().expect("the state is a letter")
 }
 
 /// True if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
 fn is_cooked(terminal: &File) -> bool {
     let modes = rustix::termios::tcgetattr(terminal)
-        .expect("a terminal")
+        .expect("the terminal has modes")
         .local_modes;
     modes.contains(rustix::termios::LocalModes::ICANON | rustix::termios::LocalModes::ECHO)
 }
 
 #[test]
 fn control_z_restores_the_terminal_and_fg_continues() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
     let port = uno.port();
     for (command, first_text, keys, next_text) in [
         ("console", "no fault", "stop\r", "ok stop"),
         ("calibrate", "before you begin", "\r", "fit the horns"),
     ] {
-        let mut person = TerminalSession::start(lizard_command(folder.path(), &[command, &port]));
-        person.wait_for(first_text);
-        assert!(!is_cooked(&person.keys), "{command}");
-        person.press("\x1a");
-        LIMIT.expect("a stopped program", || process_state(&person.child) == 'T');
-        assert!(is_cooked(&person.keys), "{command}");
-        let id = rustix::process::Pid::from_child(&person.child);
-        rustix::process::kill_process(id, rustix::process::Signal::CONT).expect("a process");
-        LIMIT.expect("keys one by one", || !is_cooked(&person.keys));
-        person.press(keys);
-        person.wait_for(next_text);
-        person.press(if command == "console" { "\x04" } else { "q" });
-        assert_eq!(person.exit_code(), Some(0), "{command}");
+        let mut session = TerminalSession::start(lizard_command(folder.path(), &[command, &port]));
+        session.wait_for(first_text);
+        assert!(!is_cooked(&session.keys), "{command}");
+        session.press("\x1a");
+        LIMIT.expect("a stopped program", || process_state(&session.child) == 'T');
+        assert!(is_cooked(&session.keys), "{command}");
+        let id = rustix::process::Pid::from_child(&session.child);
+        rustix::process::kill_process(id, rustix::process::Signal::CONT)
+            .expect("the process exists");
+        LIMIT.expect("keys one by one", || !is_cooked(&session.keys));
+        session.press(keys);
+        session.wait_for(next_text);
+        session.press(if command == "console" { "\x04" } else { "q" });
+        assert_eq!(session.exit_code(), Some(0), "{command}");
     }
 }
 
 #[test]
 fn a_program_whose_terminal_is_closed_ends() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
     let port = uno.port();
     for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
         let (mut test_side, program_side) = open_wide_terminal();
-        let copy_stdio = || Stdio::from(program_side.try_clone().expect("a copy"));
+        let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
         let mut child = lizard_command(folder.path(), &[command, &port])
             .stdin(copy_stdio())
             .stdout(copy_stdio())
             .stderr(copy_stdio())
             .spawn()
             .expect("the program starts");
-        let seen_text = LIMIT.within(first_text, move || {
+        let printed_text = LIMIT.within(first_text, move || {
             let (mut text, mut bytes) = (String::new(), [0; 4096]);
             while !text.contains(first_text) {
-                let count = test_side.read(&mut bytes).expect("output");
+                let count = test_side.read(&mut bytes).expect("output is readable");
                 text.push_str(&String::from_utf8_lossy(&bytes[..count]));
             }
             // Closes the terminal: no other process has the test's side open.
             drop(test_side);
             text
         });
-        assert!(seen_text.contains(first_text));
-        let status = LIMIT.wait_for_exit(&mut child).expect("an exit");
+        assert!(printed_text.contains(first_text));
+        let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
         assert_eq!(status.code(), Some(0), "{command}");
     }
 }
 
 #[test]
 fn a_simulated_robot_that_has_ended_is_not_reported_as_continuing() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["console", "--sim"];
-    let mut person = TerminalSession::start(lizard_command(folder.path(), &arguments));
-    person.wait_for("no fault");
+    let mut session = TerminalSession::start(lizard_command(folder.path(), &arguments));
+    session.wait_for("no fault");
     let gait = moving_gait(folder.path());
-    person.press(&format!("{gait}\r"));
-    person.wait_for(&format!("ok {gait}"));
-    person.wait_for(&format!("{gait}  "));
-    person.press("\x04");
+    session.press(&format!("{gait}\r"));
+    session.wait_for(&format!("ok {gait}"));
+    session.wait_for(&format!("{gait}  "));
+    session.press("\x04");
     LIMIT.expect("the end of the program", || {
-        person.child.try_wait().expect("a child").is_some()
+        let status = session.child.try_wait();
+        status.expect("the wait succeeds").is_some()
     });
     LIMIT.wait_for(|| {
-        person.read_output();
-        person.new_text.contains("\x1b[?2004l")
+        session.read_output();
+        session.new_text.contains("\x1b[?2004l")
     });
     assert!(
-        !person.new_text.contains("goes on"),
+        !session.new_text.contains("goes on"),
         "{:?}",
-        person.new_text
+        session.new_text
     );
 }
 
 #[test]
 fn control_characters_of_a_robot_file_do_not_reach_the_terminal() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
     let text = include_str!("../../../../robots/paper.toml");
     let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
-    fs::write(folder.path().join("bad.toml"), text).expect("a file");
+    fs::write(folder.path().join("bad.toml"), text).expect("the file is written");
     let (_, error, code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
     assert_eq!(code, Some(2));
     assert!(error.contains("]0;owned"), "{error}");

@@ -1,5 +1,5 @@
-//! `lizard twin`: runs the real firmware on the simulated UNO, moves a simulated robot by its pulses, and reports how the
-//! robot walks.
+//! `lizard twin`: runs the real firmware on the simulated UNO, moves a simulated robot by its pulses, and reports how
+//! the robot walks.
 
 pub mod replay;
 pub mod report;

@@ -6,11 +6,17 @@ use lizard_robot::Robot;
 use super::drawing::{Drawing, Point};
 use super::files::{SERVOS, paper_toml, robot_files, servo_value};
 
+/// Draws the horns of a robot file.
+fn horns_of(robot_toml: &str) -> Drawing {
+    let robot = Robot::parse(robot_toml).expect("the robot file is valid");
+    Drawing::parse(&draw_horns(&robot))
+}
+
 #[test]
-fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
+fn a_crank_is_drawn_at_and_labelled_with_its_neutral_angle() {
     for (name, text) in robot_files() {
-        let drawing = Drawing::parse(&draw_horns(&Robot::parse(&text).expect("a robot")));
-        // All four cranks are drawn in the same scale.
+        let drawing = horns_of(&text);
+        // All four cranks are drawn to the same scale.
         let link_length = |key: &str| -> f64 {
             let line = text
                 .lines()
@@ -18,7 +24,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
             let value = line
                 .and_then(|line| line.split(['=', '#']).nth(1))
                 .expect(key);
-            value.trim().parse().expect("mm")
+            value.trim().parse().expect("the value is a number")
         };
         let scales = SERVOS
             .iter()
@@ -37,7 +43,7 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
         for servo in SERVOS {
             let neutral: f64 = servo_value(&text, servo, "neutral")
                 .parse()
-                .expect("degrees");
+                .expect("the value is a number");
             let crank = drawing.points_by_id(&format!("crank-{servo}"));
             assert!(
                 turn_between(neutral, direction(&crank)).abs() < 0.02,
@@ -49,15 +55,15 @@ fn a_crank_is_drawn_and_named_at_its_neutral_angle() {
     }
 }
 
-/// The direction of a line, degrees counter-clockwise from the right. The drawing rounds points
-/// to hundredths of a pixel, so only a line of more than 50 pixels has an accurate angle.
+/// The direction of a line, degrees counter-clockwise from the right. The drawing rounds points to hundredths of a
+/// pixel, so only a line of more than 50 pixels has an accurate angle.
 fn direction(line: &[Point]) -> f64 {
     let (x, y) = (line[1].0 - line[0].0, line[0].1 - line[1].1);
     assert!(x.hypot(y) > 50.0);
     y.atan2(x).to_degrees()
 }
 
-/// The counter-clockwise turn from one direction to another.
+/// The counter-clockwise turn from one direction to another, degrees from -180 to 180.
 fn turn_between(from: f64, to: f64) -> f64 {
     (to - from + 180.0).rem_euclid(360.0) - 180.0
 }
@@ -65,27 +71,28 @@ fn turn_between(from: f64, to: f64) -> f64 {
 #[test]
 fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
     for (name, text) in robot_files() {
-        let drawing = Drawing::parse(&draw_horns(&Robot::parse(&text).expect("a robot")));
+        let drawing = horns_of(&text);
         let [placed_crank, exact_crank] = ["sits", "should"].map(|id| drawing.points_by_id(id));
         let neutral: f64 = servo_value(&text, "A1", "neutral")
             .parse()
-            .expect("degrees");
+            .expect("the value is a number");
         assert!(
             turn_between(neutral, direction(&exact_crank)).abs() < 0.02,
             "{name}"
         );
         let mut texts = drawing.texts();
         let trim = texts.find_map(|text| text.strip_prefix("trim 1 "));
-        let trim: f64 = trim.expect("a trim").parse().expect("degrees");
+        let trim = trim.expect("the drawing has a trim");
+        let trim: f64 = trim.parse().expect("the value is a number");
         let error = turn_between(direction(&placed_crank), direction(&exact_crank)) - trim;
         assert!(error.abs() < 0.02, "{name} {error}");
-        assert!(trim.abs() <= 7.2, "more than half a tooth");
+        assert!(trim.abs() <= 7.2, "{trim} is more than half a tooth");
     }
 }
 
 #[test]
 fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
-    let drawing = Drawing::parse(&draw_horns(&Robot::parse(&paper_toml()).expect("a robot")));
+    let drawing = horns_of(&paper_toml());
     let corners = drawing.points_by_id("spline");
     let count = corners.len() as f64;
     let sum = corners
@@ -93,10 +100,10 @@ fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
         .fold((0.0, 0.0), |sum, point| (sum.0 + point.0, sum.1 + point.1));
     let middle = (sum.0 / count, sum.1 / count);
     let radius_of = |point: &Point| (point.0 - middle.0).hypot(point.1 - middle.1);
-    let mean = corners.iter().map(radius_of).sum::<f64>() / count;
+    let mean_radius = corners.iter().map(radius_of).sum::<f64>() / count;
     let teeth = (0..corners.len()).filter(|index| {
         let previous = &corners[(index + corners.len() - 1) % corners.len()];
-        radius_of(previous) < mean && radius_of(&corners[*index]) > mean
+        radius_of(previous) < mean_radius && radius_of(&corners[*index]) > mean_radius
     });
     assert_eq!(teeth.count(), 25);
     let text: String = drawing.texts().collect();

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use svg::parser::Event;
 
+/// A point on the page, px; y points downward.
 pub type Point = (f64, f64);
 
 /// An element of a drawing: its tag, its attributes, and its text.
@@ -15,10 +16,12 @@ pub struct Element {
 }
 
 impl Element {
+    /// The value of an attribute; empty without it.
     pub fn attribute(&self, key: &str) -> &str {
         self.attributes.get(key).map_or("", String::as_str)
     }
 
+    /// The value of an attribute as a finite number.
     pub fn finite_number(&self, key: &str) -> f64 {
         let text = self.attribute(key);
         let number = text
@@ -44,8 +47,10 @@ impl Element {
                 .attribute("points")
                 .split(' ')
                 .map(|pair| {
-                    let (x, y) = pair.split_once(',').expect("x,y");
-                    (x.parse().expect("x"), y.parse().expect("y"))
+                    let (x, y) = pair.split_once(',').expect("a point is written as x,y");
+                    [x, y]
+                        .map(|text| text.parse::<f64>().expect("a coordinate is a number"))
+                        .into()
                 })
                 .collect(),
             _ => vec![],
@@ -61,7 +66,7 @@ pub struct Drawing {
 impl Drawing {
     pub fn parse(svg: &str) -> Self {
         let mut elements: Vec<Element> = Vec::new();
-        for event in svg::read(svg).expect("SVG") {
+        for event in svg::read(svg).expect("the drawing is SVG") {
             match event {
                 Event::Tag(tag, kind, attributes) if kind != svg::node::element::tag::Type::End => {
                     elements.push(Element {
@@ -73,7 +78,7 @@ impl Drawing {
                         content: String::new(),
                     });
                 }
-                Event::Text(text) => elements.last_mut().expect("a tag").content += text,
+                Event::Text(text) => elements.last_mut().expect("a tag precedes").content += text,
                 Event::Error(error) => panic!("{error}"),
                 _ => {}
             }
@@ -87,7 +92,7 @@ impl Drawing {
             .iter()
             .filter(|element| element.attribute("id") == id);
         let element = matches.next().unwrap_or_else(|| panic!("no {id}"));
-        assert!(matches.next().is_none(), "{id} twice");
+        assert!(matches.next().is_none(), "the drawing has two {id}");
         element
     }
 

@@ -13,9 +13,9 @@ use drawing::Drawing;
 use files::{paper_toml, robot_files};
 
 #[test]
-fn everything_is_on_the_page_and_large_enough_to_be_read() {
+fn everything_is_on_the_page_and_large_enough_to_read() {
     for (name, text) in robot_files() {
-        let robot = Robot::parse(&text).expect("a robot");
+        let robot = Robot::parse(&text).expect("the robot file is valid");
         for svg in [draw_wiring(&robot), draw_horns(&robot)] {
             let drawing = Drawing::parse(&svg);
             let (width, height) = {
@@ -51,11 +51,11 @@ fn everything_is_on_the_page_and_large_enough_to_be_read() {
 
 #[test]
 fn the_drawings_in_docs_are_up_to_date() {
-    let robot = Robot::parse(&paper_toml()).expect("a robot");
+    let robot = Robot::parse(&paper_toml()).expect("the robot file is valid");
     let neutral = robot
         .lizard()
         .solve(&robot.neutral_pose())
-        .expect("a solution");
+        .expect("the neutral pose has a solution");
     let view = draw_top_view(&robot, &neutral, true);
     for (name, svg) in [
         ("wiring", draw_wiring(&robot)),

@@ -10,11 +10,11 @@ use super::files::{SERVOS, paper_toml, robot_files, servo_value};
 
 /// Draws the wiring of a robot file.
 fn wiring_of(robot_toml: &str) -> Drawing {
-    let robot = Robot::parse(robot_toml).expect("a robot");
+    let robot = Robot::parse(robot_toml).expect("the robot file is valid");
     Drawing::parse(&draw_wiring(&robot))
 }
 
-/// The file of the paper's robot with other pins.
+/// The paper's robot file with other servo pins.
 fn with_pins(pins: [&str; 4]) -> String {
     let mut text = paper_toml();
     for (servo, pin) in SERVOS.into_iter().zip(pins) {
@@ -91,7 +91,8 @@ impl<'a> Nets<'a> {
             element.tag == "circle" && (id.starts_with("end-") || id.starts_with("pin-"))
         });
         let ends = ends.map(|element| (distance_to(&element.points()[0]), element.attribute("id")));
-        let (min_distance, name) = ends.min_by(|a, b| a.0.total_cmp(&b.0)).expect("an end");
+        let nearest = ends.min_by(|a, b| a.0.total_cmp(&b.0));
+        let (min_distance, name) = nearest.expect("the drawing has a terminal");
         assert!(
             min_distance <= MAX_TERMINAL_DISTANCE_PX,
             "nothing is at {point:?}; {name} is {min_distance} away"
@@ -99,6 +100,7 @@ impl<'a> Nets<'a> {
         name.to_owned()
     }
 
+    /// The name that represents the net of `name`.
     fn root(&self, name: &str) -> String {
         match self.parents.get(name) {
             Some(parent) => self.root(parent),
@@ -106,6 +108,7 @@ impl<'a> Nets<'a> {
         }
     }
 
+    /// Joins the nets of two names.
     fn join(&mut self, first: &str, second: &str) {
         let (first, second) = (self.root(first), self.root(second));
         if first != second {
@@ -113,6 +116,7 @@ impl<'a> Nets<'a> {
         }
     }
 
+    /// Asserts that all names are in one net.
     #[track_caller]
     fn assert_joined(&self, names: &[&str]) {
         for name in names {
@@ -206,7 +210,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
 
 #[test]
 fn removing_any_link_splits_its_strip() {
-    let svg = draw_wiring(&Robot::parse(&paper_toml()).expect("a robot"));
+    let svg = draw_wiring(&Robot::parse(&paper_toml()).expect("the robot file is valid"));
     let links = (1..10).map(|link| format!("link-ground-{link}"));
     let links = links.chain((1..6).map(|link| format!("link-supply-{link}")));
     for link in links {
@@ -305,7 +309,7 @@ fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
 }
 
 #[test]
-fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground() {
+fn inputs_are_drawn_as_options_between_their_pins_and_ground() {
     let drawing_with = |tables: &str| {
         let text = paper_toml().replace("[limits]", &format!("{tables}\n[limits]"));
         wiring_of(&text)
@@ -334,7 +338,7 @@ fn inputs_are_an_option_of_a_robot_that_has_them_between_their_pins_and_ground()
 }
 
 #[test]
-fn pins_are_where_an_uno_has_them() {
+fn pins_are_where_a_uno_has_them() {
     // Mils (thousandths of an inch) from the lower left corner, from Arduino's board file.
     const PINS: [(&str, Point); 9] = [
         ("D13", (1140.0, 2000.0)),
@@ -365,14 +369,14 @@ fn pins_are_where_an_uno_has_them() {
 }
 
 #[test]
-fn a_rail_that_is_measured_has_its_pin_marked() {
+fn the_pin_that_measures_the_rail_is_marked() {
     let text = paper_toml().replace(
         "[limits]",
         "[supply.rail]\npin = \"A3\"\nratio = 2.5\n[limits]",
     );
     let drawing = wiring_of(&text);
-    let remark = "A3 measures the +5 V strip, divided by 2.50.";
-    assert!(drawing.texts().any(|text| text == remark));
+    let note = "A3 measures the +5 V strip, divided by 2.50.";
+    assert!(drawing.texts().any(|text| text == note));
     let fill_of = |pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
     assert_eq!(fill_of("pin-A3"), fill_of("pin-D9"));
     assert_ne!(fill_of("pin-A3"), fill_of("pin-A2"));

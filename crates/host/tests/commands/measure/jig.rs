@@ -16,29 +16,29 @@ use crate::program::{read_file, run_in, scratch_folder};
 fn new_folder(name: &str) -> PathBuf {
     let folder = scratch_folder().join(name);
     let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    fs::create_dir_all(&folder).expect("the folder is created");
     folder
 }
 
 /// Writes a picture as a JPEG file that is named after its time.
 fn write_picture(folder: &Path, seconds: f64, picture: &Picture) {
-    let jpeg = encode_jpeg(picture, 90).expect("a small picture");
-    fs::write(folder.join(format!("{seconds:.4}s.jpg")), jpeg).expect("a file");
+    let jpeg = encode_jpeg(picture, 90).expect("the picture is encodable");
+    fs::write(folder.join(format!("{seconds:.4}s.jpg")), jpeg).expect("the file is written");
 }
 
 /// Writes jig.toml: the paper's robot with pulses that change faster than its servos can follow.
 fn write_jig(folder: &Path) {
     let text = read_file("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
-    fs::write(folder.join("jig.toml"), text).expect("a file");
+    fs::write(folder.join("jig.toml"), text).expect("the file is written");
 }
 
-/// Checks that a figure is within two standard errors of its true value, and that the standard error
-/// is below `max_standard_error`.
+/// Checks that a figure is within two standard errors of its true value, and that the standard error is below
+/// `max_standard_error`.
 fn check_figure(object: &Value, key: &str, true_value: f64, max_standard_error: f64) {
-    let figures = object["figures"].as_array().expect("figures");
+    let figures = object["figures"].as_array().expect("the value is an array");
     let figure = figures.iter().find(|figure| figure["key"] == key);
     let figure = figure.unwrap_or_else(|| panic!("{key}: {object}"));
-    let number_at = |name: &str| figure[name].as_f64().expect("a number");
+    let number_at = |name: &str| figure[name].as_f64().expect("the value is a number");
     let standard_error = number_at("error");
     assert!(
         (number_at("measured") - true_value).abs() < 2.0 * standard_error,
@@ -59,7 +59,7 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
     };
     let mut studio = super::studio();
     (studio.deck_tag_height, studio.exposure_s) = (40.0, 1.0 / 250.0);
-    // The poses of A1 go clockwise; counter-clockwise the leg would come too near to its singularity.
+    // The poses of A1 go clockwise; counter-clockwise the leg would come too close to its singularity.
     servo.take_pictures(
         &studio,
         -1.0,
@@ -91,7 +91,7 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
         "{output}"
     );
     let [old_text, new_text] = ["jig.toml", "measured.toml"]
-        .map(|file| fs::read_to_string(folder.join(file)).expect("a file"));
+        .map(|file| fs::read_to_string(folder.join(file)).expect("the file is readable"));
     let changed_lines: Vec<&str> = new_text
         .lines()
         .filter(|line| old_text.lines().all(|old| old != *line))
@@ -99,8 +99,9 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
     let value_of = |key: &str| {
         let line = changed_lines.iter().find(|line| line.starts_with(key));
         let line = line.unwrap_or_else(|| panic!("{key}: {changed_lines:?}"));
-        let number = line[key.len()..].split(['=', '#']).nth(1).expect("a value");
-        number.trim().parse::<f64>().expect("a number")
+        let number = line[key.len()..].split(['=', '#']).nth(1);
+        let number = number.expect("the line has a value");
+        number.trim().parse::<f64>().expect("the value is a number")
     };
     assert!((value_of("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
     // The file states the time at 4.8 V; the film was made at 4.5 V.

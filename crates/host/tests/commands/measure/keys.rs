@@ -24,7 +24,7 @@ fn gaits_json(objects: &[String]) -> String {
 /// Writes a file into the scratch folder.
 fn write_file(name: &str, text: &str) -> PathBuf {
     let path = scratch_folder().join(name);
-    fs::write(&path, text).expect("a file");
+    fs::write(&path, text).expect("the file is written");
     path
 }
 
@@ -81,24 +81,25 @@ fn files_without_usable_movements_are_refused_with_advice() {
 #[test]
 fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
     let movement_file = write_file(
-        "way.json",
+        "movement.json",
         &gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])]),
     );
     let text = read_file("robots/grain.toml");
     let robot_file = write_file("other-robot.toml", &text);
     let message = measure_keys(
         &[&movement_file],
-        &["--output", robot_file.to_str().expect("a name")],
+        &["--output", &robot_file.display().to_string()],
     )
     .expect_refusal();
     assert!(message.contains("describes a robot"), "{message}");
     let message = measure_keys(
         &[&movement_file],
-        &["--output", movement_file.to_str().expect("a name")],
+        &["--output", &movement_file.display().to_string()],
     )
     .expect_refusal();
     assert!(message.contains("this command reads it"), "{message}");
-    assert_eq!(fs::read_to_string(&robot_file).expect("a file"), text);
+    let robot_text = fs::read_to_string(&robot_file).expect("the file is readable");
+    assert_eq!(robot_text, text);
 }
 
 #[test]
@@ -111,22 +112,22 @@ fn a_measured_robot_differs_only_in_the_lines_that_were_measured() {
         gait_json("back", [-32.91, 0.08, 0.0]),
         gait_json("left", [1.09, 0.29, 14.53]),
     ];
-    let measured_file = write_file("ways.json", &gaits_json(&gaits));
+    let measured_file = write_file("movements.json", &gaits_json(&gaits));
     let output = scratch_folder().join("measured.toml");
     let _ = fs::remove_file(&output);
-    let output_name = output.to_str().expect("a name");
+    let output_name = output.to_str().expect("the path is UTF-8");
     let result =
         measure_keys(&[&measured_file], &["--output", output_name, "--json"]).expect_json();
     let verdict_of = |key: &str| {
         let mut entries = result["keys"].as_array().into_iter().flatten();
         let entry = entries.find(|entry| entry["key"] == key).expect(key);
-        entry["verdict"].as_str().expect("a word").to_owned()
+        entry["verdict"].clone()
     };
     assert_eq!(verdict_of("ground.friction_back_over_forward"), "moved");
     assert_eq!(result["written"], output_name);
     let (old_text, new_text) = (
         read_file("robots/paper.toml"),
-        fs::read_to_string(&output).expect("a file"),
+        fs::read_to_string(&output).expect("the file is readable"),
     );
     let changed_lines = new_text
         .lines()

@@ -15,10 +15,10 @@ use serde_json::Value;
 
 use crate::program::{run_in, run_line, scratch_folder};
 
-/// Frame rate of the films.
+/// Frame rate of the films, pictures per second.
 const PICTURES_PER_SECOND: f64 = 8.0;
 
-/// A studio whose camera has few pixels, for speed. The sheet fills its picture.
+/// A studio with a low resolution, for speed, in which the sheet fills the picture.
 fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(4));
     (studio.size, studio.focal_length) = ([640, 360], 1.0);
@@ -61,24 +61,24 @@ fn render_walk(folder: &str, file_name: impl Fn(usize) -> String) -> PathBuf {
 fn render_film(
     folder: &str,
     file_name: impl Fn(usize) -> String,
-    seconds: f64,
-    spot_at: impl Fn(f64) -> Pose,
+    duration_s: f64,
+    pose_at: impl Fn(f64) -> Pose,
 ) -> PathBuf {
     let folder = scratch_folder().join(folder);
     let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    fs::create_dir_all(&folder).expect("the folder is created");
     let mut rng = Rng::with_seed(4);
     let background = studio().background(&mut rng);
-    for i in 0..(seconds * PICTURES_PER_SECOND) as usize {
-        let picture = background.picture(i as f64 / PICTURES_PER_SECOND, &spot_at, &mut rng);
+    for i in 0..(duration_s * PICTURES_PER_SECOND) as usize {
+        let picture = background.picture(i as f64 / PICTURES_PER_SECOND, &pose_at, &mut rng);
         let path = folder.join(file_name(i));
-        let jpeg = encode_jpeg(&picture, 80).expect("a small picture");
-        fs::write(path, jpeg).expect("a file");
+        let jpeg = encode_jpeg(&picture, 80).expect("the picture is encodable");
+        fs::write(path, jpeg).expect("the file is written");
     }
     folder
 }
 
-/// The words of a table that are the same for every film: all but numbers and verdicts.
+/// The words of a table that are the same for every film: all except numbers and verdicts.
 fn stable_words(table: &str) -> Vec<&str> {
     let verdict_words = ["more", "less", "errors", "agrees"];
     let component_words = ["ahead", "left", "turn", "mm", "deg"];
@@ -105,7 +105,7 @@ fn stable_words(table: &str) -> Vec<&str> {
 #[test]
 fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let folder = render_walk("walk film", |i| format!("walk-{}ms.jpg", i * 125));
-    let folder = folder.to_str().expect("a name");
+    let folder = folder.to_str().expect("the path is UTF-8");
     let robot = crate::program::robot_path("paper");
     let measure = |options: &[&str]| {
         let arguments = [
@@ -143,7 +143,7 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         Some(number_at(&["cycles"]) as usize)
     );
     let figures = crate::program::read_file("tools/physics/figures.json");
-    let figures: Value = serde_json::from_str(&figures).expect("figures");
+    let figures: Value = serde_json::from_str(&figures).expect("the figures are JSON");
     let mujoco = &figures["paper"]["walk"]["rigid, level"]["mujoco"];
     assert_eq!(&object["mujoco"], mujoco);
     // The stored MuJoCo figures stay valid if a comment is added to robot.toml, but not if the mass changes.
@@ -155,8 +155,8 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         (heavier_text, &Value::Null),
     ] {
         let changed_path = scratch_folder().join("changed.toml");
-        fs::write(&changed_path, text).expect("a file");
-        let changed_path = changed_path.to_str().expect("a name");
+        fs::write(&changed_path, text).expect("the file is written");
+        let changed_path = changed_path.to_str().expect("the path is UTF-8");
         let outcome = run_in(
             scratch_folder(),
             &[
@@ -176,7 +176,8 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     }
     let range = &object["range"];
     let predicted = number_at(&["forward", "predicted"]);
-    let [min, max] = ["least", "most"].map(|end| range[end].as_f64().expect("a number"));
+    let [min, max] =
+        ["least", "most"].map(|end| range[end].as_f64().expect("the value is a number"));
     assert!(min < predicted - 5.0 && predicted + 1.0 < max, "{range}");
     assert_eq!(range["least_by"], "mounting of the legs");
     let table = measure(&[]).expect_success();
@@ -185,8 +186,8 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let page = crate::program::read_file("docs/measure.md");
     let (_, example) = page
         .split_once("--gait walk --height 95\n")
-        .expect("an example");
-    let (example, _) = example.split_once("```").expect("an end");
+        .expect("the page has the example");
+    let (example, _) = example.split_once("```").expect("the example ends");
     let table = table.replace(folder, "film.mp4");
     assert_eq!(stable_words(example), stable_words(&table));
     let csv = run_in(
@@ -217,15 +218,15 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     );
 }
 
-/// The gaits of a result with the number of their walks.
+/// The gaits of a result, each with the number of its walks.
 fn walk_counts(object: &Value) -> Vec<(&str, usize)> {
-    let gaits = object["gaits"].as_array().expect("a list");
-    let walk_count_of = |result: &Value| result["walks"].as_array().expect("a list").len();
+    let gaits = object["gaits"].as_array().expect("the value is an array");
+    let walk_count_of = |result: &Value| result["walks"].as_array().map_or(0, Vec::len);
     gaits
         .iter()
         .map(|result| {
             (
-                result["gait"].as_str().expect("a name"),
+                result["gait"].as_str().expect("the gait has a name"),
                 walk_count_of(result),
             )
         })
@@ -253,7 +254,7 @@ fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
         series.duration_s(),
         |time| series.pose_at(time),
     );
-    let folder = folder.to_str().expect("a name");
+    let folder = folder.to_str().expect("the path is UTF-8");
     let robot = crate::program::robot_path("paper");
     let measure = |options: &[&str]| {
         let arguments = [
@@ -262,7 +263,8 @@ fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
         run_in(scratch_folder(), &[&arguments[..], options].concat(), "")
     };
     let svg_path = scratch_folder().join("measured.svg");
-    let picture_options = ["--json", "--picture", svg_path.to_str().expect("a name")];
+    let svg_name = svg_path.display().to_string();
+    let picture_options = ["--json", "--picture", &svg_name];
     let unnamed_result = measure(&picture_options).expect_json();
     assert_eq!(
         walk_counts(&unnamed_result),
@@ -273,27 +275,28 @@ fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
     assert_eq!(walk_counts(&named_result), walk_counts(&unnamed_result));
     for (result, gait) in unnamed_result["gaits"]
         .as_array()
-        .expect("a list")
+        .expect("the value is an array")
         .iter()
         .zip([&walk, &left])
     {
         let truth = true_displacement(gait);
-        for (part, truth, max_error) in [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)]
+        for (component, truth, max_error) in
+            [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)]
         {
-            let mean = result[part]["mean"].as_f64().expect("a mean");
-            assert!((mean - truth).abs() < max_error, "{part}: {result}");
+            let mean = result[component]["mean"].as_f64().expect(component);
+            assert!((mean - truth).abs() < max_error, "{component}: {result}");
         }
         assert_eq!(result["farthest"]["agrees"], true, "{result}");
         assert!(
-            result["within"].as_array().expect("a path").len() >= 6,
+            result["within"].as_array().map_or(0, Vec::len) >= 6,
             "{result}"
         );
     }
-    let svg = fs::read_to_string(svg_path).expect("a picture");
+    let svg = fs::read_to_string(svg_path).expect("the file is readable");
     for label in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
         assert!(svg.contains(label), "{label}: {svg}");
     }
-    // Refused: a gait that is not in the film, and gaits in the wrong order.
+    // A gait that is not in the film and gaits in the wrong order are refused.
     let refusal = measure(&["--gait", "walk,left,walk,back"]).expect_refusal();
     assert!(
         refusal.starts_with("lizard: 3 walks between rests of")
@@ -312,14 +315,14 @@ fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
 
 #[test]
 fn impossible_measurements_are_refused_with_a_message() {
-    let folder = scratch_folder().join("measure troubles");
+    let folder = scratch_folder().join("measure refusals");
     let _ = fs::remove_dir_all(&folder);
     let path_in = |name: &str| folder.join(name);
-    fs::create_dir_all(path_in("empty")).expect("a folder");
-    fs::create_dir_all(path_in("text")).expect("a folder");
-    fs::create_dir_all(path_in("untimed")).expect("a folder");
-    fs::write(path_in("text/a.png"), "no picture").expect("a file");
-    fs::write(path_in("untimed/frame-001.png"), "").expect("a file");
+    fs::create_dir_all(path_in("empty")).expect("the folder is created");
+    fs::create_dir_all(path_in("text")).expect("the folder is created");
+    fs::create_dir_all(path_in("untimed")).expect("the folder is created");
+    fs::write(path_in("text/a.png"), "no picture").expect("the file is written");
+    fs::write(path_in("untimed/frame-001.png"), "").expect("the file is written");
     let refusal_of = |line: &str| {
         let arguments: Vec<&str> = line.split(' ').collect();
         run_in(&folder, &arguments, "").expect_refusal()
@@ -367,7 +370,7 @@ fn impossible_measurements_are_refused_with_a_message() {
 #[test]
 fn a_film_without_ffmpeg_says_what_to_install() {
     let film = scratch_folder().join("film.mp4");
-    fs::write(&film, "a film").expect("a file");
+    fs::write(&film, "a film").expect("the file is written");
     let program = env!("CARGO_BIN_EXE_lizard");
     let mut command = std::process::Command::new(program);
     command
@@ -376,7 +379,7 @@ fn a_film_without_ffmpeg_says_what_to_install() {
         .env("PATH", "");
     let output = lizard_time_limit::LIMIT
         .output(&mut command, b"")
-        .expect("an exit");
+        .expect("the program exits");
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(
         message.contains("install ffmpeg, or give a folder of pictures"),
@@ -392,7 +395,7 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
     use std::fmt::Write as _;
     use std::os::unix::fs::PermissionsExt;
     let folder = scratch_folder().join("ffmpeg");
-    fs::create_dir_all(&folder).expect("a folder");
+    fs::create_dir_all(&folder).expect("the folder is created");
     let mut film = b"YUV4MPEG2 W640 H360 F8:1 Ip A1:1 Cmono\n".to_vec();
     let mut times = String::new();
     let (background, walk) = (studio(), varied_walk());
@@ -405,13 +408,14 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
         film.extend(picture.grey());
         let _ = write!(times, "{seconds:.6},\n\n");
     }
-    fs::write(folder.join("film"), film).expect("a file");
-    fs::write(folder.join("times"), times).expect("a file");
+    fs::write(folder.join("film"), film).expect("the file is written");
+    fs::write(folder.join("times"), times).expect("the file is written");
     for (program, file) in [("ffmpeg", "film"), ("ffprobe", "times")] {
         let path = folder.join(program);
         let script = format!("#!/bin/sh\nexec cat '{}'\n", folder.join(file).display());
-        fs::write(&path, script).expect("a script");
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("permissions");
+        fs::write(&path, script).expect("the file is written");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755))
+            .expect("the script is made executable");
     }
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lizard"));
     let path = format!("{}:/usr/bin:/bin", folder.display());
@@ -420,11 +424,11 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
     command.arg(folder.join("film")).env("PATH", path);
     let output = lizard_time_limit::LIMIT
         .output(&mut command, b"")
-        .expect("an exit");
-    let object: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        .expect("the program exits");
+    let object: Value = serde_json::from_slice(&output.stdout).expect("the output is JSON");
     let forward_mm = object["gaits"][0]["forward"]["mean"]
         .as_f64()
-        .expect("a distance");
+        .expect("the value is a number");
     assert!(
         (forward_mm - true_displacement(&paper_gait("walk")).forward).abs() < 0.2,
         "{object}"
@@ -437,7 +441,7 @@ fn every_number_in_the_json_of_a_film_is_finite() {
     let folder = render_walk("numbers", |i| format!("{i}.jpg"));
     let arguments = [
         "measure",
-        folder.to_str().expect("a name"),
+        folder.to_str().expect("the path is UTF-8"),
         "--fps",
         "8",
         "--height",

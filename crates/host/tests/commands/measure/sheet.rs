@@ -6,9 +6,9 @@ use lizard_film::{Picture, read_tags, sheet};
 
 use crate::program::{run, scratch_folder};
 
-/// Resolution of the rasterised page.
+/// Resolution of the rasterised page, pixels per mm.
 const PIXELS_PER_MM: f64 = 3.0;
-/// Size of a PDF point.
+/// Size of a PDF point, mm.
 const MM_PER_POINT: f64 = 25.4 / 72.0;
 
 /// The operands of each line of `text` that ends in the PDF operator `operator`.
@@ -26,22 +26,24 @@ fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f6
 /// Writes the sheet; returns the PDF's text, and the page's width and height in mm.
 fn write_sheet(paper: &str) -> (String, [f64; 2]) {
     let path = scratch_folder().join(format!("sheets/{paper}.pdf"));
-    let name = path.to_str().expect("a name");
+    let name = path.to_str().expect("the path is UTF-8");
     let output = run(&["measure", "sheet", "--paper", paper, "--output", name]).expect_success();
     assert!(output.contains("print it at 100 %"), "{output}");
-    let text = String::from_utf8_lossy(&fs::read(&path).expect("a file")).into_owned();
-    let (_, media_box) = text.split_once("/MediaBox [").expect("a size");
-    let (media_box, _) = media_box.split_once(']').expect("an end");
+    let bytes = fs::read(&path).expect("the file is readable");
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let media_box = text.split_once("/MediaBox [");
+    let (_, media_box) = media_box.expect("the PDF has a page size");
+    let (media_box, _) = media_box.split_once(']').expect("the page size ends");
     let size: Vec<f64> = media_box
         .split(' ')
-        .map(|word| word.parse().expect("a number"))
+        .map(|word| word.parse().expect("the value is a number"))
         .collect();
     let size = [size[2] * MM_PER_POINT, size[3] * MM_PER_POINT];
     (text, size)
 }
 
-/// Draws the filled rectangles of a page as a picture. Also returns the extent of the ink: the least and
-/// greatest distance from the left edge, then from the lower edge, mm.
+/// Draws the filled rectangles of a page as a picture. Also returns the extent of the ink: the smallest and largest
+/// distances from the left edge, then from the lower edge, mm.
 fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
     let columns = (page_width * PIXELS_PER_MM) as usize;
     let rows = (page_height * PIXELS_PER_MM) as usize;
@@ -57,16 +59,16 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64
             continue;
         };
         let [x, y, width, height] = [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT);
-        for (axis, (from, length)) in [(x, width), (y, height)].into_iter().enumerate() {
+        for (axis, (start, length)) in [(x, width), (y, height)].into_iter().enumerate() {
             let [low, high] = ink_extent[axis];
-            ink_extent[axis] = [low.min(from), high.max(from + length)];
+            ink_extent[axis] = [low.min(start), high.max(start + length)];
         }
         if lines.peek() != Some(&"f") {
             continue;
         }
         // A pixel is filled if its centre lies in the rectangle.
-        let pixel_range = |from: f64, to: f64| {
-            (from * PIXELS_PER_MM + 0.5) as usize..(to * PIXELS_PER_MM + 0.5) as usize
+        let pixel_range = |start: f64, end: f64| {
+            (start * PIXELS_PER_MM + 0.5) as usize..(end * PIXELS_PER_MM + 0.5) as usize
         };
         for row in pixel_range(page_height - y - height, page_height - y) {
             for column in pixel_range(x, x + width) {
@@ -74,12 +76,12 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64
             }
         }
     }
-    let picture = Picture::new(columns, rows, grey).expect("a picture");
+    let picture = Picture::new(columns, rows, grey).expect("the page has pixels");
     (picture, ink_extent)
 }
 
 #[test]
-fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_in_true_size() {
+fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
     for (paper, size_mm) in [("a4", [297.0, 210.0]), ("letter", [279.4, 215.9])] {
         let (text, page_mm) = write_sheet(paper);
         assert!(

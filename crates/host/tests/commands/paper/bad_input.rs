@@ -58,12 +58,13 @@ fn rows_before_a_malformed_row_are_answered_in_full() {
     );
     assert_eq!((outcome.code, outcome.stdout.lines().count()), (Some(2), 2));
     for line in outcome.stdout.lines() {
-        serde_json::from_str::<serde_json::Value>(line).expect("a whole object");
+        serde_json::from_str::<serde_json::Value>(line)
+            .expect("the line is a complete JSON object");
     }
 }
 
 #[test]
-fn a_wrong_header_is_refused() {
+fn an_invalid_header_is_refused() {
     let header_hint =
         "; the header is theta1,theta4,theta8,theta5, in any order, and seconds if you like";
     let cases: &[(&[u8], String)] = &[
@@ -108,7 +109,7 @@ fn a_wrong_header_is_refused() {
 }
 
 #[test]
-fn wrong_arguments_end_with_code_2_and_say_what_is_wrong() {
+fn invalid_arguments_end_with_code_2_and_a_message_that_names_the_reason() {
     let cases: &[(&str, &str)] = &[
         ("pose --theta1 138", "--theta4"),
         (

@@ -32,9 +32,10 @@ fn every_command_of_the_page_on_the_paper_prints_the_output_that_the_page_shows(
     let page = read_file("docs/paper.md");
     let mut command_count = 0;
     for block in page.split("```console\n").skip(1) {
-        let block = block.split("```").next().expect("a closed block");
-        let (command, expected_output) = block.split_once('\n').expect("a command and its answer");
-        let args = command.strip_prefix("$ lizard ").expect("a lizard command");
+        let block = block.split("```").next().expect("the block has a text");
+        let parts = block.split_once('\n');
+        let (command, expected_output) = parts.expect("the block has a command and its output");
+        let args = command.strip_prefix("$ lizard ").expect(command);
         let outcome = run_line(&with_paper(args), "");
         assert_eq!(outcome.code, Some(0), "{args}: {}", outcome.stderr);
         assert!(
@@ -103,7 +104,7 @@ fn table_1_of_the_paper_agrees_with_its_robot_except_for_the_link_that_it_names_
         let line = robot
             .lines()
             .find_map(|line| line.strip_prefix(name)?.trim().strip_prefix('='));
-        let value = line.expect(name).split('#').next().expect("a value");
+        let value = line.expect(name).split('#').next().expect(name);
         value.trim().parse().expect(name)
     };
     let rows = TABLE_1
@@ -133,7 +134,8 @@ fn table_1_of_the_paper_agrees_with_its_robot_except_for_the_link_that_it_names_
 #[test]
 fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
     let page = read_file("docs/paper.md");
-    let (_, table) = page.split_once("| in the paper |").expect("the table");
+    let table = page.split_once("| in the paper |");
+    let (_, table) = table.expect("the page has the table");
     let rows: Vec<Vec<&str>> = table
         .lines()
         .skip(2)
@@ -190,7 +192,7 @@ fn the_figures_of_the_papers_walk_on_the_page_are_those_of_the_gaits() {
     let prediction_of = |gait: &str, key: &str| -> f64 {
         let rows = rows
             .lines()
-            .map(|row| serde_json::from_str::<serde_json::Value>(row).expect("JSON"));
+            .map(|row| serde_json::from_str::<serde_json::Value>(row).expect("the output is JSON"));
         let row = rows
             .into_iter()
             .find(|row| row["gait"] == gait)

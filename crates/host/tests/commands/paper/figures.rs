@@ -4,13 +4,13 @@ use serde_json::Value;
 
 use crate::program::{read_file, run_line, with_paper};
 
-/// Runs a command with the paper's robot, and parses its output.
+/// Runs a command with the paper's robot, and parses its output as JSON.
 fn paper_json(args: &str) -> Value {
     run_line(&with_paper(args), "").expect_json()
 }
 
 fn number_of(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
+    value.as_f64().expect("the value is a number")
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn a_design_of_another_size_keeps_its_shape() {
 fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
     let points = run_line("design --chart --json --step 0.05", "").expect_json();
     let points = points.as_array().unwrap();
-    // Every (i, j) with r3 = .9 - (i + j) .05 between 0 and .45.
+    // Every (i, j) with r3 = 0.9 - 0.05 (i + j) between 0 and 0.45.
     let expected = (1..18)
         .flat_map(|i| (1..18).map(move |j| i + j))
         .filter(|sum| (10..18).contains(sum))
@@ -74,7 +74,7 @@ fn the_search_gives_designs_within_the_limits_the_best_first() {
     let designs = paper_json("design --search --json --step 0.05 --top 50");
     let designs = designs.as_array().unwrap();
     assert!(!designs.is_empty());
-    let mut last_score = f64::INFINITY;
+    let mut previous_score = f64::INFINITY;
     for design in designs {
         let d = number_of(&design["d"]);
         assert!(
@@ -82,8 +82,8 @@ fn the_search_gives_designs_within_the_limits_the_best_first() {
                 && number_of(&design["r2"]) * d >= 20.0 - 1e-9
         );
         assert!(number_of(&design["margin"]) >= 0.3 && number_of(&design["sweep"]) >= 20.0);
-        assert!(number_of(&design["score"]) <= last_score);
-        last_score = number_of(&design["score"]);
+        assert!(number_of(&design["score"]) <= previous_score);
+        previous_score = number_of(&design["score"]);
     }
 }
 
@@ -126,11 +126,11 @@ fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
     );
     assert!((eliminated_determinant / factored_determinant - 1.0).abs() < 1e-9);
     let start_angles = [120.0, 70.0, 310.0, 230.0];
-    let mut last_distance = 0.0;
+    let mut previous_distance = 0.0;
     for near_pose in report["nearest"].as_array().unwrap() {
         let distance = number_of(&near_pose["distance"]);
-        assert!(distance >= last_distance);
-        last_distance = distance;
+        assert!(distance >= previous_distance);
+        previous_distance = distance;
         let near_angles: Vec<f64> = (0..4)
             .map(|i| start_angles[i] + number_of(&near_pose["turn"][i]))
             .collect();
@@ -143,10 +143,10 @@ fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
             Some(margins) => margins.values().map(number_of).collect(),
             None => vec![0.0],
         };
-        let smallest = margins
+        let min_margin = margins
             .iter()
-            .fold(1.0_f64, |smallest, margin| smallest.min(margin.abs()));
-        assert!(smallest < 1e-4, "{} {smallest}", near_pose["what"]);
+            .fold(1.0_f64, |min_margin, margin| min_margin.min(margin.abs()));
+        assert!(min_margin < 1e-4, "{} {min_margin}", near_pose["what"]);
     }
 }
 
@@ -205,9 +205,9 @@ fn the_angles_for_a_point_lead_back_to_the_point() {
 
 #[test]
 fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
-    let robot =
-        lizard_robot::Robot::parse(&read_file("robots/paper.toml")).expect("robots/paper.toml");
-    let look = robot.gait("look").expect("look");
+    let robot = lizard_robot::Robot::parse(&read_file("robots/paper.toml"))
+        .expect("the robot file is valid");
+    let look = robot.gait("look").expect("the robot has the gesture");
     for i in 0..1000 {
         let solution = robot
             .lizard()

@@ -13,7 +13,7 @@ fn solve_lines(input: &str) -> Vec<Value> {
     outcome
         .stdout
         .lines()
-        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .map(|line| serde_json::from_str(line).expect("the output is JSON"))
         .collect()
 }
 
@@ -162,13 +162,13 @@ fn columns_come_in_any_order_and_line_ends_and_quotes_do_not_matter() {
 
 #[test]
 fn angles_by_options_and_by_input_give_the_same_solution() {
-    let flag_solution = run_line(
+    let option_solution = run_line(
         &with_paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139"),
         "",
     )
     .expect_json();
     assert_eq!(
-        flag_solution,
+        option_solution,
         solve_lines(&format!("{HEADER}138,42,-42,-139\n"))[0]
     );
 }
@@ -243,7 +243,7 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
     let gaits = run_line("gaits --json", "");
     assert_eq!(gaits.code, Some(0), "{}", gaits.stderr);
     for gait in gaits.stdout.lines() {
-        let gait: Value = serde_json::from_str(gait).expect("JSON");
+        let gait: Value = serde_json::from_str(gait).expect("the output is JSON");
         let name = gait["gait"].as_str().unwrap();
         let trace = run_line(&format!("gaits --trace {name}"), "");
         let solved_outcome = run_line("pose --json", trace.stdout.as_bytes());
@@ -262,7 +262,7 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
             .lines()
             .zip(trace.stdout.lines().skip(1))
         {
-            let solution: Value = serde_json::from_str(line).expect("JSON");
+            let solution: Value = serde_json::from_str(line).expect("the output is JSON");
             let fields: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
             assert_eq!(solution["seconds"], fields[0], "{name}");
             assert_eq!(solution["safe"], true, "{name} {row}: {line}");
@@ -277,8 +277,7 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
 
 #[test]
 fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
-    // A3 can turn only 20 degrees from neutral in one direction: 400 us at 20 us per
-    // degree.
+    // A3 can turn only 20 degrees from neutral in one direction: 400 us at 20 us per degree.
     let robot = RobotFile::from_paper(
         "short-travel",
         &[(
