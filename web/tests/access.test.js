@@ -1,4 +1,4 @@
-// Accessibility: axe-core finds nothing, a phone shows the whole page, and the floor is moved by keys.
+// Accessibility: axe-core finds no violations, no screen scrolls sideways, and arrow keys pan the floor.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, afterEach, before, test } from 'node:test';
@@ -23,7 +23,7 @@ const ROOMS = {
 
 /** Opens the page and calls `check` in each room, with all its panels unfolded. */
 async function checkEveryRoom(options, check) {
-  // The page's own policy would not allow axe-core to be put into it.
+  // The page's Content Security Policy would block the injected axe-core.
   const page = await openStanding({ ...options, bypassCSP: true });
   for (const [room, panels] of Object.entries(ROOMS)) {
     for (const panel of panels) await unfold(page, panel);
@@ -45,7 +45,7 @@ for (const [name, options] of [
   ['dark', { colorScheme: 'dark' }],
   ['on a phone', PHONE],
 ]) {
-  test(`axe-core finds nothing, ${name}`, async () => {
+  test(`axe-core finds no violations, ${name}`, async () => {
     await checkEveryRoom(options, async (page, room) => {
       if (room === 'drive') await page.addScriptTag({ path: AXE });
       const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
@@ -60,7 +60,7 @@ for (const [name, options] of [
   ['dark, on a phone', { ...PHONE, colorScheme: 'dark' }],
   ['in forced colours', { forcedColors: 'active' }],
 ]) {
-  test(`axe-core finds nothing in any step of the first connection, ${name}`, async () => {
+  test(`axe-core finds no violations in any step of the first connection, ${name}`, async () => {
     const page = await openStanding({ ...options, bypassCSP: true });
     await page.addScriptTag({ path: AXE });
     await page.locator('#setup-open').click();
@@ -76,7 +76,7 @@ for (const [name, options] of [
   });
 }
 
-// Fonts differ from machine to machine, and some are wider.
+// Fonts differ from machine to machine; letter spacing imitates wider ones.
 test('no screen scrolls sideways, with narrow or wide fonts', async () => {
   const overflows = [];
   await checkEveryRoom({ ...PHONE, deviceScaleFactor: 1 }, async (page, room) => {
@@ -97,7 +97,7 @@ test('no screen scrolls sideways, with narrow or wide fonts', async () => {
   assert.deepEqual(overflows, []);
 });
 
-test('the floor is moved by keys, and dragged by a pointer', async () => {
+test('arrow keys and dragging pan the floor and switch Follow off', async () => {
   const page = await openStanding();
   const floor = page.locator('#floor');
   const follow = page.getByRole('button', { name: 'Follow' });

@@ -33,7 +33,7 @@ for (const module of [HM10, NORDIC]) {
   test(`a robot is driven and stopped through the module ${module.name}`, async () => {
     const page = await openWalking(module);
     await radio.run(3000);
-    assert.equal(await activityOf(page), 'walk', 'the page shows it walking');
+    assert.equal(await activityOf(page), 'walk', 'the page shows that the robot walks');
     assert.ok((await pageTimeOf(page)) - (await page.evaluate(() => window.lastMoveMs)) < 100, 'its servos move');
     await page.keyboard.press('Escape');
     await radio.runUntil('the robot stops', async () => (await activityOf(page)) === 'stop');
@@ -47,17 +47,17 @@ for (const module of [HM10, NORDIC]) {
   });
 }
 
-test('a robot whose link is cut stands still, and the page reconnects by itself', async () => {
+test('a robot whose link is cut stops, and the page reconnects by itself', async () => {
   const page = await openWalking(HM10);
   await radio.run(1000);
   const cutMs = await pageTimeOf(page);
-  await radio.takeOutOfReach();
+  await radio.takeOutOfRange();
   await radio.runUntil('the loss of the link is shown', async () => (await text(page, '#trouble')).includes('The board at HMSoft is out of reach.'));
   await radio.run(2000);
   assert.match(await text(page, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
   const lastMoveMs = await page.evaluate(() => window.lastMoveMs);
   assert.ok(lastMoveMs - cutMs <= 901 + 40, `it moved for ${lastMoveMs - cutMs} ms`);
-  await radio.bringBack();
+  await radio.bringIntoRange();
   await radio.runUntil('the robot is stopped', async () => (await activityOf(page)) === 'stop');
   await page.locator('#trouble', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
   assert.ok(!(await text(page, '#trouble')).includes('out of reach'));
@@ -66,7 +66,7 @@ test('a robot whose link is cut stands still, and the page reconnects by itself'
   await radio.runUntil('the robot walks again', async () => (await activityOf(page)) === 'walk');
 });
 
-test('a trim that was set out of reach shows the robot\'s value when the robot answers again', async () => {
+test('a trim that was set out of range shows the robot\'s value when the robot answers again', async () => {
   radio = await Radio.open(HM10);
   const { page } = radio;
   await radio.pick();
@@ -74,24 +74,24 @@ test('a trim that was set out of reach shows the robot\'s value when the robot a
   await unfold(page, '#calibrate');
   const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
   await radio.runUntil('the trim is read', () => trim.isVisible());
-  await radio.takeOutOfReach();
+  await radio.takeOutOfRange();
   await trim.fill('5');
   await radio.run(4000);
   await page.locator('#trouble', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
   assert.equal(await trim.inputValue(), '5');
-  await radio.bringBack();
+  await radio.bringIntoRange();
   await radio.runUntil('the trim is read again', async () => (await trim.inputValue()) === '0');
 });
 
-test('a stop that is pressed out of reach is the first line that the robot receives afterwards', async () => {
+test('a stop that is pressed out of range is the first line that the robot receives afterwards', async () => {
   const page = await openWalking(HM10);
-  await radio.takeOutOfReach();
+  await radio.takeOutOfRange();
   await radio.run(300);
   await page.keyboard.press('Escape');
   const previousLength = (await page.evaluate(() => window.receivedText)).length;
   await radio.run(1000);
   assert.ok(await page.evaluate(() => document.body.classList.contains('stopping')));
-  await radio.bringBack();
+  await radio.bringIntoRange();
   await radio.runUntil('the stop is answered', async () => !(await page.evaluate(() => document.body.classList.contains('stopping'))));
   const lines = (await page.evaluate(() => window.receivedText)).slice(previousLength).split('\n');
   assert.equal(lines.find((line) => line !== '' && !line.startsWith('OK+')), 'stop', lines.join('|'));
@@ -115,7 +115,7 @@ test('picking no Bluetooth module reports no problem', async () => {
   assert.match(await text(page, '#where'), /simulated UNO/);
 });
 
-test('a machine without Bluetooth says so', async () => {
+test('the page says that a machine has no Bluetooth', async () => {
   radio = await Radio.open(HM10, { adapter: 'absent' });
   await radio.page.locator('#radio').click();
   await radio.page.locator('#trouble', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
@@ -129,7 +129,7 @@ test('if Bluetooth is forbidden, the page says where to allow it', async () => {
   assert.match(await text(page, '#trouble'), /disallowed by permissions policy/, 'the browser itself has refused it');
 });
 
-test('a phone whose screen goes off stops its robot with its last line', async () => {
+test('a phone whose screen goes off stops its robot with the last line that it sends', async () => {
   const page = await openWalking(HM10);
   await radio.run(1000);
   const hiddenMs = await page.evaluate(() => {
@@ -144,7 +144,7 @@ test('a phone whose screen goes off stops its robot with its last line', async (
   assert.ok(lastMoveMs - hiddenMs < 400, `it moved for ${lastMoveMs - hiddenMs} ms`);
 });
 
-test('when a phone falls asleep without notice, its robot stops, and the page reports that afterwards', async () => {
+test('when a phone falls asleep without warning, its robot stops, and the page reports that afterwards', async () => {
   const page = await openWalking(HM10);
   const sleepMs = await page.evaluate(() => window.readBoardMs());
   await radio.sleep(3000);

@@ -22,7 +22,7 @@ export async function openWithErasedBoard() {
   return page;
 }
 
-/** Opens the page and connects a board that hears nothing. */
+/** Opens the page and connects a board that receives nothing. */
 export async function openWithDeafBoard() {
   const page = await openWithBoard(null, 0);
   await page.evaluate(() => (window.attachedBoard.send = () => {}));

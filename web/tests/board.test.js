@@ -1,4 +1,4 @@
-// A board on USB that is new, has another firmware, or is left while it walks.
+// A board on USB that is new, has another firmware, or is disconnected while it walks.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -34,7 +34,7 @@ test('a new UNO is identified after some seconds, and one button writes the firm
   await page.clock.runFor(8000);
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await page.locator(control).isEnabled(), control);
-  assert.equal(await page.locator('#trouble').isVisible(), false, 'the board greets, so the trouble is over');
+  assert.equal(await page.locator('#trouble').isVisible(), false, 'the board sends its banner, so the problem is solved');
   await page.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
 });
 
@@ -43,7 +43,7 @@ test('for a board that does not answer, the page asks whether it is a UNO or a N
   await runUntil(page, 'the page asks', async () => /no boot loader answers\. Is it a UNO or a Nano\?/.test(await text(page, '#trouble')));
 });
 
-test('a board that its port does not reset is asked for its state and tracked', async () => {
+test('a board that its port does not reset is queried for its state and tracked', async () => {
   const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => (window.boardKeepsRunning = true));
   await page.locator('#connect').click();
@@ -89,7 +89,7 @@ test('a board with another robot of the list is reported, and one press shows it
   await page.locator('#trouble', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();
 });
 
-test('the alarm for a board that is out of reach ends when the board is gone', async () => {
+test('the alarm for a board that is out of range ends when the board is gone', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => {
     const { link } = window.lizard;

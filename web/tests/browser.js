@@ -32,11 +32,11 @@ const FIREFOX = {
 };
 /**
  * Time limit of a wait: long, so that only a hang fails on a busy machine. The environment variable PATIENCE sets
- * another, which is useful while a test is written.
+ * another, which is useful while writing a test.
  */
 export const TIMEOUT_MS = Number(process.env.PATIENCE ?? 300_000);
 
-/** Awaits a promise; fails with the name of the wait if the promise does not settle in time. */
+/** Awaits a promise; rejects with the name of the wait if the promise does not settle in time. */
 export function withTimeout(waitName, promise) {
   let timer;
   const timeout = new Promise((_, reject) => {
@@ -66,7 +66,7 @@ const testServers = [];
 /** Opens a session of the browser's DevTools protocol. */
 export const openDevTools = () => browser.newBrowserCDPSession();
 
-/** Closes the pages of a test; otherwise their robots would walk on. */
+/** Closes the pages of a test; otherwise their robots would continue to walk. */
 export async function closePages() {
   await withTimeout('the pages to close', Promise.all(pages.splice(0).map((page) => page.close())));
   for (const testServer of testServers.splice(0)) testServer.close();
@@ -204,7 +204,7 @@ export async function openPage(options = {}, initScript = undefined, url = addre
   page.on('console', (message) => {
     // Expected: these pages take their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
-    // Without a graphics chip the browser warns that its software painter is slow.
+    // Without a graphics chip the browser warns that software rendering is slow.
     if (message.text().includes('GL Driver Message (OpenGL, Performance')) return;
     // Expected where a test forbids a feature.
     if (message.text().startsWith('Permissions policy violation:')) return;
@@ -259,7 +259,7 @@ export async function openStanding(options) {
   return page;
 }
 
-/** Presses Esc, and asserts that the robot then stays where it is, within 0.05 mm. */
+/** Presses Esc, and asserts that the robot then does not move by more than 0.05 mm. */
 export async function assertStops(page) {
   const readPlace = () => page.evaluate(() => window.lizard.last.place);
   await page.keyboard.press('Escape');

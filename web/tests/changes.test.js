@@ -163,14 +163,14 @@ test('the pace slider shows the robot\'s pace after a typed line and after a res
   const slider = page.getByLabel('Pace');
   assert.equal(await slider.inputValue(), '35');
   await page.locator('#reset').click();
-  // The page has not asked for a status yet.
+  // The page has not requested a status yet.
   await advance(page, 2000);
   assert.equal(await slider.inputValue(), '100');
   assert.equal(await page.locator('#speed-out').innerText(), '100 %');
   assert.match(await sendLine(page, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
-test("the share of the servos' line is that of the robot's pace and of the servos' supply", async () => {
+test("the share of the servos' torque-speed line follows the robot's pace and the servos' supply", async () => {
   const page = await openStanding();
   await unfold(page, '#power');
   const readShare = async (pace) => {

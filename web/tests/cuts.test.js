@@ -48,10 +48,10 @@ test('the page reports a robot as written only if its bytes are on the board, af
     await runUntil(page, 'the page reports the outcome', async () => /^(not )?written/.test(await text(page, '#flash-said')));
     const message = await text(page, '#flash-said');
     const boardBytes = await readBytes(page, 'flash', SECTION_START, SECTION_START + robotBytes.length);
-    const outcome = boardBytes.equals(robotBytes) ? 'whole' : boardBytes.equals(largeBytes) ? 'untouched' : 'part';
+    const outcome = boardBytes.equals(robotBytes) ? 'complete' : boardBytes.equals(largeBytes) ? 'untouched' : 'part';
     t.diagnostic(`pulled after ${ms} ms: the bytes are ${outcome}, and the page says "${message}"`);
     if (/^written and verified/.test(message)) {
-      assert.equal(outcome, 'whole', message);
+      assert.equal(outcome, 'complete', message);
       counts.written += 1;
     } else {
       assert.match(message, /^not written: (the board (is not connected any more|does not answer)|no boot loader answers)/);

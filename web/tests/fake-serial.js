@@ -5,7 +5,7 @@
  * - `flashedRobot`: name of the robot in the board's flash, or null for an erased flash;
  * - `isSameBoard`: true to open the previous board again;
  * - `boardKeepsRunning`: true for a board that has run for four seconds and that its port does not reset;
- * - `boardSendsGarbage`: true for a board that sends meaningless bytes;
+ * - `boardSendsGarbage`: true for a board that sends random bytes;
  * - `loaderBaud`: baud rate of the boot loader, if it differs from the firmware's;
  * - `usbVendor`: USB vendor of the board's chip;
  * - `bluetoothService` and `moduleBaud`: Bluetooth service and baud rate of a port that is a Bluetooth module;

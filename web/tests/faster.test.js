@@ -44,7 +44,7 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
     withTimeout('lizard tune', promisify(execFile)(resolve(ROOT, process.env.LIZARD), args)),
     startSearch(page).then(() => waitForSearchEnd(page)),
   ]);
-  assert.equal(loadedPaths.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search is loaded when it is started');
+  assert.equal(loadedPaths.filter((path) => path.endsWith('/files/tune.wasm')).length, 1, 'the search is loaded once, when it is started');
   const tuneResult = JSON.parse(stdout);
   const gainPercent = Math.round(100 * (tuneResult.tuned.speeds[0] / tuneResult.gait.speeds[0] - 1));
   assert.equal(
@@ -60,7 +60,7 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent !== previousTable, previousTable);
   assert.equal(await text(page, '#gait-table'), tuneResult.fragment);
   assert.equal(await text(page, '#gait-way'), distanceRow[2]);
-  // Undoes it, and uses it again.
+  // Undoes the change, and makes it again.
   await page.getByRole('button', { name: 'Back to the previous gait' }).click();
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent === previousTable, previousTable);
   await page.getByRole('button', { name: 'Use this gait' }).click();
@@ -147,7 +147,7 @@ test('for a turn the page shows both angles, and the found gait turns faster by 
   const comparison = await text(page, '#faster-ways');
   const [, foundAngle, previousAngle] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundAngle / previousAngle / promisedRatio - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed}`);
-  assert.ok(Number(foundAngle) > 360, `${foundAngle} is more than a whole turn`);
+  assert.ok(Number(foundAngle) > 360, `${foundAngle} is not more than a full turn`);
 });
 
 test('changing the robot ends a search for the previous one', async () => {
@@ -189,7 +189,7 @@ test('an impossible search is refused with a message, and a number out of range 
   assert.equal(await rate.inputValue(), '900', 'the last valid number');
 });
 
-test('the room works by keyboard alone, fits a phone, and axe-core finds nothing in it', async () => {
+test('the room works by keyboard alone, fits a phone, and has no violations for axe-core', async () => {
   const page = await openEditor({ rounds: 200 }, { viewport: { width: 320, height: 640 }, bypassCSP: true });
   await page.getByLabel('Seed of the random numbers').focus();
   await page.keyboard.press('Tab');

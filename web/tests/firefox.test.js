@@ -1,5 +1,5 @@
 // The page in Debian's Firefox. Boards at a port are tested in Chromium only: on a busy machine a simulated board is
-// slower than real time, and only in Chromium a test can stop the page's clock.
+// slower than real time, and only in Chromium can a test stop the page's clock.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 

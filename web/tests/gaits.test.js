@@ -1,4 +1,4 @@
-// A gait is made by dragging bars: it walks as predicted, and a gait that breaks a limit is refused with the nearest
+// A gait is made by dragging bars: it walks as predicted, and a gait that violates a limit is refused with the nearest
 // valid value.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
@@ -17,7 +17,7 @@ async function openEditor(options) {
 }
 
 const editorText = (page, id) => page.locator(`#gait-${id}`).innerText();
-/** Waits until the shown gait has been tried. */
+/** Waits until the prediction of the shown gait is displayed. */
 const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 const waitForChange = (page, id, previousText) => page.waitForFunction(([id, previousText]) => document.querySelector(`#gait-${id}`).textContent !== previousText, [id, previousText]);
 
@@ -34,7 +34,7 @@ async function drag(page, ring, fromPhase, toPhase) {
   await page.mouse.up();
 }
 
-test('the editor\'s prediction of an unchanged gait is that of its button in Drive', async () => {
+test('for an unchanged gait, the editor predicts the distance shown on its button in Drive', async () => {
   const page = await openEditor();
   const button = page.locator('#gaits button[data-command="walk"] small');
   await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
@@ -51,7 +51,7 @@ test('a bar and its end are dragged, and the numbers follow', async () => {
   await waitForChange(page, 'way', previousDistance);
   await drag(page, 1, 0.5, 0.42);
   assert.ok(Math.abs(Number(await page.locator('#gait-duty').inputValue()) - 0.67) < 0.011);
-  // The number boxes do the same.
+  // Editing the number fields has the same effect.
   await page.getByLabel('LF starts at').fill('0.25');
   await page.locator('#gait-duty').fill('0.75');
   await page.waitForFunction((distance) => document.querySelector('#gait-way').textContent === distance, previousDistance);
@@ -78,7 +78,7 @@ test('an edited gait survives a reload, and an invalid stored one is dropped', a
   }
 });
 
-test('a value that breaks a limit is refused, and a button offers the nearest valid one', async () => {
+test('a value that violates a limit is refused, and a button offers the nearest valid one', async () => {
   const page = await openEditor();
   await page.locator('#gait-amplitude').fill('40');
   const button = page.locator('#gait-instead button', { hasText: 'Amplitude' });
@@ -131,7 +131,7 @@ test('an edited gait walks as far as predicted, and is written into robot.toml',
   assert.ok(Math.abs(walkedMm - predictedMm) < 0.03 * predictedMm, `${walkedMm} mm of ${predictedMm}`);
   const toml = await page.evaluate(() => window.lizard.toml);
   assert.ok(toml.includes(await editorText(page, 'table')), toml.slice(-400));
-  // One click restores the previous robot.
+  // The reset button of the lengths restores the previous robot.
   await unfold(page, '#lengths-panel');
   await page.locator('#lengths-reset').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));

@@ -56,10 +56,10 @@ test('the table of a run has its poses, places and pulses, frame by frame', asyn
   assert.ok(rows.length >= 150 && rows.length <= passedFrameCount + 1, `${rows.length} of ${passedFrameCount} frames`);
   rows.forEach((row, n) => assert.equal(Number(row.time_s), Number((n * 0.02).toFixed(2))));
   assert.ok(rows.every(({ doing }) => doing === '"walk"'));
-  // The angles that the pulses ask for, by the servo's line in robot.toml: 10 us per degree around 1500 us.
+  // The angles that the pulses command according to robot.toml: 10 us per degree around 1500 us.
   const pulseAngle = (row) => 138.590378 + (Number(row.pulse_a1_us) - 1500) / 10;
   const deviations = rows.map((row) => Math.abs(pulseAngle(row) - Number(row.a1_deg)));
-  assert.ok(Math.max(...deviations) < 8, `A1 is ${Math.max(...deviations)} deg from what its pulse asks for`);
+  assert.ok(Math.max(...deviations) < 8, `A1 is ${Math.max(...deviations)} deg from the angle that its pulse commands`);
   assert.ok(Number(rows[rows.length - 1].ahead_mm) > Number(rows[0].ahead_mm) + 10, 'the robot went ahead');
   const poseIndex = rows.findIndex((row) => Math.abs(Number(row.a2_deg) - angles[1]) < 0.001);
   assert.ok(poseIndex > 0, 'the table has a pose of the run');

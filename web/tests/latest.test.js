@@ -1,4 +1,4 @@
-// If questions arrive faster than a worker answers, only the last one is answered.
+// If questions arrive faster than a worker answers, only the latest one is answered.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 

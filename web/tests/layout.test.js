@@ -1,5 +1,5 @@
-// The layout of the page stays as it is from the first picture on, with narrow and with wide letters, and the view of
-// the floor follows the floor's size.
+// The layout of the page does not change after the first frame, with narrow and with wide letters, and the view of the
+// floor follows the floor's size.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -34,7 +34,7 @@ for (const [letters, height] of [
     [1280, 800],
     [390, 844],
   ]) {
-    test(`nothing moves after the first picture: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
+    test(`nothing moves after the first frame: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
       const page = await openBlank({ viewport: { width, height: viewHeight } });
       await page.addInitScript(setLetterHeight, height);
       // Without the predictions that come with the page, as for a user's own robot.
@@ -54,7 +54,7 @@ for (const [letters, height] of [
         const distanceTextOf = (gait) => document.querySelector(`#gaits button[data-command="${gait.command}"] small`).textContent;
         return window.lizard.description.gaits.filter(({ moves }) => moves).every(distanceTextOf);
       });
-      assert.deepEqual(await boundsOf(page), firstBounds, 'the predictions are there');
+      assert.deepEqual(await boundsOf(page), firstBounds, 'the predictions are shown');
     });
   }
 }
@@ -62,7 +62,7 @@ for (const [letters, height] of [
 /** Returns the view's zoom, CSS pixels per mm, and the zoom at which 420 mm of the floor fit. */
 const zoomsOf = (page) =>
   page.evaluate(async () => {
-    // The next picture is drawn with the current size.
+    // The next frame is drawn with the current size.
     for (let n = 0; n < 3; n++) await new Promise(requestAnimationFrame);
     const { dataset, clientWidth, clientHeight } = document.querySelector('#floor');
     return [dataset.zoom, (Math.min(clientWidth, clientHeight) / 420).toFixed(4)];

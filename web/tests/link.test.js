@@ -75,7 +75,7 @@ test('a lost "stop" is sent again until the robot answers, and the page is red u
   assert.equal(await page.locator('#alarm').isVisible(), false);
 });
 
-test('a robot that rests is not asked to stop again', async () => {
+test('a robot that rests gets no repeated "stop"', async () => {
   const page = await openWithBoard('robot', 8000);
   await sendLine(page, 'rest');
   const receivedLength = (await receivedTextOf(page)).length;
@@ -86,7 +86,7 @@ test('a robot that rests is not asked to stop again', async () => {
   assert.equal(await isStopping(page), false);
 });
 
-test('a refusal that the radio has truncated is not taken for the answer to "stop"', async () => {
+test('a refusal that the radio has truncated is not mistaken for the answer to "stop"', async () => {
   const page = await openWalking();
   await dropLines(page, ['stop']);
   await page.keyboard.press('Escape');
@@ -99,7 +99,7 @@ test('a refusal that the radio has truncated is not taken for the answer to "sto
   await runUntil(page, 'the stop is answered', async () => !(await isStopping(page)));
 });
 
-test('answers to repeated stops are not taken for answers to the next lines', async () => {
+test('answers to repeated stops are not mistaken for answers to the next lines', async () => {
   const page = await openWalking();
   await page.evaluate(() => {
     const board = window.attachedBoard;
@@ -191,7 +191,7 @@ test('while a user drives, deadman is set, and a line is sent at least in every 
   assert.ok(!(await text(page, '#log')).includes('deadman 901'), 'the log does not show the page\'s own lines');
 });
 
-test('a robot out of reach stops, and reports the reason when it is in reach again', async () => {
+test('a robot out of range stops, and reports the reason when it is in range again', async () => {
   const page = await openWalking();
   assert.ok(await isMoving(page, 500));
   await dropLines(page, []);
@@ -218,7 +218,7 @@ test('stopping the robot restores its own deadman', async () => {
   assert.match(await receivedTextOf(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
-test('a deadman left behind by a page is not taken for the robot\'s own', async () => {
+test('a deadman left behind by a page is not mistaken for the robot\'s own', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => window.attachedBoard.send([...'deadman 901\n'].map((letter) => letter.charCodeAt(0))));
   await page.clock.runFor(500);
@@ -240,7 +240,7 @@ test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven 
   assert.deepEqual(await page.evaluate(() => window.portRequest.allowedBluetoothServiceClassIds), [bluetoothService]);
   assert.match(await receivedTextOf(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
   const baudRate = await page.evaluate(() => window.attachedBoard.uno.usart.baudRate);
-  assert.ok(Math.abs(baudRate / 9600 - 1) < 0.03, `the chip has found the rate: ${baudRate} baud`);
+  assert.ok(Math.abs(baudRate / 9600 - 1) < 0.03, `the chip has not found the baud rate: ${baudRate} baud`);
   assert.ok(await page.locator('#flash-write').isDisabled());
   await page.locator('#gaits button[data-command="walk"]').click();
   await runUntil(page, 'the robot walks', async () => (await text(page, '#doing')) === 'walk');

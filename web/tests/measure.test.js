@@ -17,7 +17,7 @@ const folder = mkdtempSync(join(tmpdir(), 'lizard-film-'));
 /** Largest differences of a mean from the true value, mm and deg; the same as in the tests of crates/film. */
 const TOLERANCES = { forward: 0.3, left: 0.3, turn: 0.5 };
 
-/** Renders a film into a folder; the arguments are its width, its number of cycles and the numbers of hidden tags. */
+/** Renders a film into a folder; the arguments are its width, its number of cycles and the ids of hidden tags. */
 function renderFilm(name, ...args) {
   const filmFolder = join(folder, name);
   execFileSync(join(dirname(LIZARD), 'studio'), [filmFolder, ...args.map(String)]);
@@ -144,7 +144,7 @@ test('the gait in a film file recorded by the browser is found by its path; with
   await page.getByRole('button', { name: 'Measure again' }).click();
   await waitForMessage(page, 'said', /^left: the path is not that of this gait.*; it is like walk\./);
   assert.ok(!(await page.locator('#measure-results').isVisible()));
-  // A file that is no film.
+  // A file that is not a film.
   await page.locator('#measure-file').setInputFiles({ name: 'words.mp4', mimeType: 'video/mp4', buffer: Buffer.from('words') });
   await waitForMessage(page, 'said', /^words\.mp4 is no film that this browser can play/);
 });
@@ -160,7 +160,7 @@ test('if another program drives, the film that is recorded until Done is measure
   assertNearTruth(JSON.parse(await download(page, 'json')).gaits[0]);
 });
 
-test('a hidden tag is named while the camera is on, and no figure is computed', async () => {
+test('a hidden tag is named while the camera is on, and no result is computed', async () => {
   await openBrowserWithCamera(join(renderFilm('hidden', 640, 1, 2), 'film.y4m'));
   const page = await openRoom();
   await switchCameraOn(page, 'Not seen: the left tag of strip 2.');
@@ -217,7 +217,7 @@ test('a board whose link is cut is no longer driven, the room reports it, and th
   }));
   await page.locator('#connect').click();
   await page.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
-  // At the beginning of the film the robot is near the end of the sheet, and the page would first drive it back.
+  // At the start of the film the robot is near the end of the sheet, and the page would first drive it back.
   await startDriving(page, ['walk', 'left'], 8, 2500);
   await waitForMessage(page, 'said', '1 of 2: walk');
   await page.waitForTimeout(6000);

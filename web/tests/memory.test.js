@@ -1,4 +1,4 @@
-// A page that stays open for hours: robots and gaits that were tried, and rooms that were visited, keep no memory.
+// A page that stays open for hours: robots and gaits that were tried, and rooms that were visited, leak no memory.
 import assert from 'node:assert/strict';
 import { after, afterEach, test } from 'node:test';
 
@@ -64,7 +64,7 @@ test('an argument of a wrong form is refused and changes nothing', () => {
  * fills its buffers for the last pulses, the log and the track.
  */
 const SECONDS_IN_ROOM = Number(process.env.STAY ?? 8);
-/** Growth that is allowed without a leak: a kilobyte that leaks at each picture would be 3 MB in a round. */
+/** Growth that is allowed without a leak: a kilobyte that leaks in each frame would be 3 MB in a round. */
 const ALLOWED_BYTES = 2_000_000;
 
 test('while a robot walks, a second round through the rooms takes no more memory than the first', async (t) => {

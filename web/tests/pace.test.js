@@ -1,5 +1,5 @@
-// The CPU time of a picture. Real time depends on the machine, so this measures the CPU time of the page's thread,
-// while the test's clock makes the page draw sixty pictures a second.
+// The CPU time of a frame. Real time depends on the machine, so this measures the CPU time of the page's thread,
+// while the test's clock makes the page draw sixty frames a second.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -9,28 +9,28 @@ before(openBrowser);
 afterEach(closePages);
 after(closeBrowser);
 
-/** Time from one picture to the next, ms. */
-const PICTURE_MS = 1000 / 60;
-const PICTURE_COUNT = 60;
-/** Number of measurements. The least one counts, because a busy machine can only add time. */
+/** Time from one frame to the next, ms. */
+const FRAME_MS = 1000 / 60;
+const FRAME_COUNT = 60;
+/** Number of measurements. The smallest one counts, because a busy machine can only add time. */
 const RUN_COUNT = 3;
 
-/** Measures the CPU time of the page's thread for a picture, and the simulated time that passed. */
+/** Measures the CPU time of the page's thread for a frame, and the simulated time that passed. */
 async function measureCost(page, readCpuMs) {
   const readSimulatedMs = () => page.evaluate(() => window.lizard.link.board.cycle / 16_000);
   let leastMs = Infinity;
   let passedMs = 0;
   for (let n = 0; n < RUN_COUNT; n++) {
     const [startMs, startCpuMs] = [await readSimulatedMs(), await readCpuMs()];
-    await page.clock.runFor(PICTURE_COUNT * PICTURE_MS);
-    leastMs = Math.min(leastMs, ((await readCpuMs()) - startCpuMs) / PICTURE_COUNT);
+    await page.clock.runFor(FRAME_COUNT * FRAME_MS);
+    leastMs = Math.min(leastMs, ((await readCpuMs()) - startCpuMs) / FRAME_COUNT);
     passedMs += (await readSimulatedMs()) - startMs;
   }
   return { leastMs, passedMs };
 }
 
 async function openWalking() {
-  // The page's own policy would not allow a style to be put into it.
+  // The page's Content Security Policy would block the injected style.
   const page = await openPage({ viewport: { width: 1400, height: 1000 }, bypassCSP: true }, () => {});
   await page.clock.runFor(3000);
   await page.locator('#gaits button[data-command="walk"]').click();
@@ -44,28 +44,28 @@ async function openWalking() {
   return { page, readCpuMs };
 }
 
-test('at sixty pictures a second the processor is idle most of the time', async (t) => {
+test('at sixty frames a second the processor is idle most of the time', async (t) => {
   const { page, readCpuMs } = await openWalking();
   const fullCost = await measureCost(page, readCpuMs);
-  // The simulation keeps real time: no picture exceeded its budget.
-  const realMs = PICTURE_COUNT * PICTURE_MS * RUN_COUNT;
+  // The simulation keeps real time: no frame exceeded its budget.
+  const realMs = FRAME_COUNT * FRAME_MS * RUN_COUNT;
   assert.ok(fullCost.passedMs > 0.9 * realMs, `${fullCost.passedMs} of ${realMs} ms simulated`);
   // Without canvases nothing is painted; on a laptop the graphics chip would do that.
   await page.addStyleTag({ content: 'canvas { display: none !important }' });
   const computeCost = await measureCost(page, readCpuMs);
-  t.diagnostic(`a picture: ${fullCost.leastMs.toFixed(1)} ms of CPU, ${computeCost.leastMs.toFixed(1)} ms without painting`);
-  assert.ok(fullCost.leastMs < PICTURE_MS, `${fullCost.leastMs} ms, painted by the processor`);
-  assert.ok(computeCost.leastMs < PICTURE_MS / 3, `${computeCost.leastMs} ms without painting`);
+  t.diagnostic(`a frame: ${fullCost.leastMs.toFixed(1)} ms of CPU, ${computeCost.leastMs.toFixed(1)} ms without painting`);
+  assert.ok(fullCost.leastMs < FRAME_MS, `${fullCost.leastMs} ms, painted by the processor`);
+  assert.ok(computeCost.leastMs < FRAME_MS / 3, `${computeCost.leastMs} ms without painting`);
 });
 
-test('moving the slider of the springs does not block drawing', async () => {
+test('moving the slider of the springs does not block rendering', async () => {
   const { page, readCpuMs } = await openWalking();
   await page.addStyleTag({ content: 'canvas { display: none !important }' });
   await page.getByLabel('Driven by').selectOption('strut');
   await page.getByLabel('Pull in the strut').fill('0.5');
   // Another thread predicts ten gaits meanwhile, which takes seconds.
   const { leastMs } = await measureCost(page, readCpuMs);
-  assert.ok(leastMs < PICTURE_MS / 2, `${leastMs} ms without painting`);
+  assert.ok(leastMs < FRAME_MS / 2, `${leastMs} ms without painting`);
 });
 
 test('the floor is painted while the robot moves, and not while it stands', async () => {
@@ -77,21 +77,21 @@ test('the floor is painted while the robot moves, and not while it stands', asyn
       return getContext.apply(this, args);
     };
   });
-  /** Counts the paintings of a second. */
-  const countPaintings = async () => {
+  /** Counts the paints of a second. */
+  const countPaints = async () => {
     const startCount = await page.evaluate(() => window.paintCount);
     await page.clock.runFor(1000);
     return (await page.evaluate(() => window.paintCount)) - startCount;
   };
   await page.clock.runFor(4000);
-  assert.equal(await countPaintings(), 0, 'standing');
+  assert.equal(await countPaints(), 0, 'standing');
   await page.locator('#zoom-in').click();
-  assert.ok((await countPaintings()) > 0, 'zoomed');
+  assert.ok((await countPaints()) > 0, 'zoomed');
   await page.emulateMedia({ colorScheme: 'dark' });
-  assert.ok((await countPaintings()) > 0, 'in dark colours');
-  assert.equal(await countPaintings(), 0, 'standing again');
+  assert.ok((await countPaints()) > 0, 'in dark colours');
+  assert.equal(await countPaints(), 0, 'standing again');
   await page.evaluate(() => void window.lizard.ask('walk'));
-  assert.ok((await countPaintings()) > 20, 'walking');
+  assert.ok((await countPaints()) > 20, 'walking');
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

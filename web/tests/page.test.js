@@ -31,7 +31,7 @@ async function runGait(page, name) {
   await gaitButton(page, name).click();
   await advance(page, 5500);
   const { predicted, measured } = await displacementsOf(page, name);
-  assert.ok(measured, `${name} has gone on for a whole cycle`);
+  assert.ok(measured, `${name} has completed a cycle`);
   return { predicted, measured };
 }
 
@@ -161,7 +161,7 @@ test('every robot of robots/ can be chosen, and is in the image that runs', asyn
   }
 });
 
-/** Sets the trim of A1 by the keyboard and saves it; asserts that the saved trim is kept over a reset. */
+/** Sets the trim of A1 by the keyboard and saves it; asserts that the saved trim survives a reset. */
 async function calibrate(page, runFor) {
   await unfold(page, '#calibrate');
   await runFor(500);
@@ -184,10 +184,10 @@ async function calibrate(page, runFor) {
   await runFor(500);
   await page.locator('#cal-read').click();
   await runFor(500);
-  assert.equal(await trim.inputValue(), '2', 'the trim is kept over a reset');
+  assert.equal(await trim.inputValue(), '2', 'the trim survives a reset');
 }
 
-test('a calibration is set, saved and kept over a reset', async () => {
+test('a calibration is set, saved, and survives a reset', async () => {
   const page = await openStanding();
   await calibrate(page, (ms) => advance(page, ms));
 });
@@ -250,7 +250,7 @@ test('an invalid HEX file is refused before anything is written', async () => {
   const input = page.getByLabel('HEX file');
   await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
   await page.locator('#flash-said', { hasText: "not written: line 1 is not Intel HEX: missing start code ':'" }).waitFor();
-  assert.equal((await sendLine(page, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot goes on');
+  assert.equal((await sendLine(page, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot continues');
 });
 
 test('a board by Web Serial is driven, mirrored, calibrated and written', async () => {
@@ -286,7 +286,7 @@ test('unplugging the board is reported, and the simulation continues', async () 
   assert.match(await text(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
 });
 
-test('a supply that sinks stops the robot, and its fault is shown', async () => {
+test('a falling supply stops the robot, and its fault is shown', async () => {
   const page = await openStanding();
   await runGait(page, 'walk');
   await page.locator('#supply').fill('3.9');

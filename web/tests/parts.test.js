@@ -1,4 +1,4 @@
-// The parts in the page are those of `lizard parts`: the same files and the same steps of the guide. They are shown in
+// The parts in the page equal those of `lizard parts`: the same files and the same steps of the guide. They are shown in
 // the robot's pose, and loaded only when their panel is opened.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -22,8 +22,8 @@ let folder;
 before(openBrowser);
 before(async () => {
   folder = await mkdtemp(join(tmpdir(), 'parts-'));
-  const partsMade = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', folder, '--robot', join(ROOT, 'robot.toml')]);
-  await withTimeout('lizard parts', partsMade);
+  const partsRun = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', folder, '--robot', join(ROOT, 'robot.toml')]);
+  await withTimeout('lizard parts', partsRun);
 });
 afterEach(closePages);
 after(async () => {
@@ -48,7 +48,7 @@ async function clickAt(page, xShare, yShare) {
   return messageOf(page).innerText();
 }
 
-/** Turns the view to straight above. */
+/** Turns the view to look from straight above. */
 async function lookFromAbove(page) {
   for (let n = 0; n < 12; n++) await page.locator('#space').press('ArrowUp');
 }
@@ -68,18 +68,18 @@ test('an unprintable length is reported at once with the nearest printable one, 
   const nearestMm = Number(/ ([\d.]+)$/.exec(await useButton.innerText())[1]);
   assert.ok(nearestMm > 46 && nearestMm < 52, `${nearestMm} mm`);
 
-  const triedFolder = await mkdtemp(join(tmpdir(), 'tried-'));
-  after(() => rm(triedFolder, { recursive: true, force: true }));
+  const trialFolder = await mkdtemp(join(tmpdir(), 'tried-'));
+  after(() => rm(trialFolder, { recursive: true, force: true }));
   // The fit of the whole robot is proved before the parts of a corner are made.
   const makeParts = async (mm) => {
-    const path = join(triedFolder, 'robot.toml');
+    const path = join(trialFolder, 'robot.toml');
     const toml = await page.evaluate((mm) => {
       const { robot, toml } = window.lizard;
       return robot.constructor.lengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
     }, mm);
     await writeFile(path, toml);
-    const partsMade = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(triedFolder, 'parts'), '--corner', '--robot', path]);
-    return withTimeout('lizard parts', partsMade.then(() => 'made', ({ stderr }) => stderr));
+    const partsRun = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(trialFolder, 'parts'), '--corner', '--robot', path]);
+    return withTimeout('lizard parts', partsRun.then(() => 'made', ({ stderr }) => stderr));
   };
   assert.equal(await makeParts(nearestMm), 'made');
   assert.match(await makeParts(nearestMm + 0.5), /overlap|may come as near as/);
@@ -104,7 +104,7 @@ test('an unprintable length is reported at once with the nearest printable one, 
   assert.ok(endsMm[0] <= Number(shortestMm) && endsMm[1] > nearestMm, `the slider: ${endsMm} mm`);
 });
 
-test('while a length is dragged, the two parts that meet are red in 3D, and their overlap is shown in mm', async () => {
+test('while a length is dragged, the two parts that collide are red in 3D, and their overlap is shown in mm', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   await page.locator('#solid').click();
@@ -205,7 +205,7 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
     const box = document.querySelector('#files-said');
     window.shownMessages = [];
     new MutationObserver(() => window.shownMessages.push(box.textContent)).observe(box, { childList: true });
-    // Reports of the progress have their own port. On a busy machine they may come after the files, as they do here.
+    // Reports of the progress have their own port. On a busy machine they may arrive after the files, as they do here.
     const { addEventListener } = MessagePort.prototype;
     window.delayedReports = [];
     MessagePort.prototype.addEventListener = function (type, listener) {
@@ -301,7 +301,7 @@ test('the parts move with the robot', async () => {
       return [0, 1].map((axis) => hits.reduce((sum, point) => sum + point[axis], 0) / hits.length);
     });
   const isNear = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 0.5;
-  /** Waits until the head has moved away from `previousPlace` and stands still; returns its place. */
+  /** Waits until the head has moved away from `previousPlace` and has stopped; returns its place. */
   const waitForHead = async (previousPlace = [NaN, NaN]) => {
     await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
     for (let lastPlace = previousPlace; ; ) {
@@ -327,7 +327,7 @@ test('the page says why a robot cannot be built', async () => {
   await page.getByText('The parts of this robot cannot be made: parts.height is 10 mm').waitFor();
 });
 
-test('3D pictures take less than a core on a machine without a graphics chip', async (t) => {
+test('3D rendering takes less than a core on a machine without a graphics chip', async (t) => {
   const page = await openParts();
   const browserSession = await withTimeout('the processes', page.context().browser().newBrowserCDPSession());
   const readGpuSeconds = async () => {

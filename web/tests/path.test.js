@@ -96,7 +96,7 @@ test('a shape can be chosen by the keyboard, for the tail as well', async () => 
   }
 });
 
-test('a tap is refused, with a message that it is not a line', async () => {
+test('a tap is refused with the message that it is not a line', async () => {
   const page = await openPanel();
   const previousTable = await panelText(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));

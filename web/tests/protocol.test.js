@@ -1,5 +1,5 @@
 // The protocol that drives the robot in front of a camera, in a simulated world: a robot that does not walk as
-// predicted, hands that hide it, answers that come late, and a link that is cut.
+// predicted, hands that hide it, late answers, and a link that is cut.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -37,13 +37,13 @@ function makeGenerator(seed) {
 class World {
   seconds = 0;
   place = { x: 0, y: 0, heading: 0 };
-  /** Gait under way, or the last command. */
+  /** The running gait, or the last command. */
   activity = 'stand';
   /** Number of cycles after which the gait ends. */
   cycleCount = 0;
   /** Cycles of the gait that have passed. */
   phase = 0;
-  /** Distance of a cycle over the predicted distance. */
+  /** Ratio of the distance of a cycle to the predicted distance. */
   distanceFactor = 1;
   /** Delay of the robot's answers, s. */
   answerDelay = 0.1;
@@ -72,8 +72,8 @@ class World {
     return new Promise((resolve) => this.timers.push({ dueSeconds: this.seconds + seconds, resolve }));
   }
 
-  /** Way from the robot to the middle of the sheet, in the robot's own frame, mm. */
-  get wayBack() {
+  /** Path from the robot to the middle of the sheet, in the robot's own frame, mm. */
+  get pathBack() {
     const { x, y, heading } = this.place;
     const [ahead, left] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
     return { ahead, left, reach: TAG_DISTANCE + NEAR_MARGIN, isNear: Math.hypot(x, y) > TAG_DISTANCE + NEAR_MARGIN };
@@ -129,7 +129,7 @@ class World {
     this.seconds += 1 / STEPS_PER_SECOND;
     this.move();
     this.maxDistance = Math.max(this.maxDistance, Math.hypot(this.place.x, this.place.y));
-    this.protocol.setPlace(this.isHidden ? null : this.wayBack);
+    this.protocol.setPlace(this.isHidden ? null : this.pathBack);
     const dueTimers = this.timers.filter((timer) => timer.dueSeconds <= this.seconds);
     this.timers = this.timers.filter((timer) => timer.dueSeconds > this.seconds);
     for (const { resolve } of dueTimers) resolve();
@@ -137,12 +137,12 @@ class World {
   }
 
   /**
-   * Runs a plan to its end, and then for five more seconds. Calls `onStep` before each step. Returns the reason of an
+   * Runs a plan to its end, and then for five more seconds. Calls `onStep` before each step. Returns the reason for an
    * early end, or null.
    */
   async run(plan, onStep = () => {}) {
     let [isOver, reason] = [false, null];
-    this.protocol.setPlace(this.wayBack);
+    this.protocol.setPlace(this.pathBack);
     const runEnd = this.protocol.run(plan).catch((error) => (reason = error.message)).then(() => (isOver = true));
     for (let extraSteps = 0; extraSteps < 5 * STEPS_PER_SECOND; extraSteps += isOver ? 1 : 0) {
       assert.ok(this.seconds < 1000, `the plan does not end: ${this.lines}`);
@@ -176,7 +176,7 @@ async function runWorlds(count, act) {
 }
 
 test('a robot that walks as predicted walks every gait, most of them with all cycles, and is seldom put back by hand', async () => {
-  let [putBackCount, wholeWalkCount, walkCount] = [0, 0, 0];
+  let [putBackCount, completeWalkCount, walkCount] = [0, 0, 0];
   await runWorlds(60, async (world, _, seed) => {
     assert.equal(await world.run(PLAN), null);
     const { walks } = world.protocol;
@@ -187,16 +187,16 @@ test('a robot that walks as predicted walks every gait, most of them with all cy
       assert.ok(end - begin < PLAN.cycles + 0.7, `world ${seed}: ${end - begin} s`);
       const gaitSeconds = walks.filter((walk) => walk.gait === gait).map(({ during: [from, to] }) => to - from);
       assert.ok(gaitSeconds.reduce((a, b) => a + b) > PLAN.cycles - 4, `world ${seed}: ${gait}, ${gaitSeconds} s`);
-      wholeWalkCount += end - begin > PLAN.cycles - 0.1 ? 1 : 0;
+      completeWalkCount += end - begin > PLAN.cycles - 0.1 ? 1 : 0;
       walkCount += 1;
     }
     putBackCount += world.putBackCount;
   });
-  assert.ok(wholeWalkCount > 0.8 * walkCount, `${wholeWalkCount} of ${walkCount} walks have all cycles`);
+  assert.ok(completeWalkCount > 0.8 * walkCount, `${completeWalkCount} of ${walkCount} walks have all cycles`);
   assert.ok(putBackCount < 0.5 * 60, `${putBackCount}`);
 });
 
-test('a walk of many cycles ends at the end of the sheet, the robot comes back by itself and walks the rest', async () => {
+test('a walk of many cycles is interrupted at the end of the sheet, and the robot returns by itself and walks the rest', async () => {
   const world = new World();
   assert.equal(await world.run({ ...PLAN, gaits: gaits('walk'), cycles: 30 }), null);
   const walkSeconds = world.protocol.walks.map(({ during: [begin, end] }) => end - begin);

@@ -1,5 +1,5 @@
 // The page's image equals the compiler's, byte for byte, and its pulses equal those of the simulated UNO on libsimavr,
-// width for width, also for a robot that only the page has.
+// width for width, even for a robot that only the page has.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -56,7 +56,7 @@ function simulate(toml) {
   }
 }
 
-test('the image of robot.toml is what the compiler makes, to the byte', async () => {
+test('the image of robot.toml equals that of the compiler, byte for byte', async () => {
   const page = await openPage();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
   loadHex(readFileSync(HEX, 'utf8'), flash);
@@ -122,7 +122,7 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
     }),
   );
   const periods = new Set(rises.slice(1).map((rise, n) => (rise - rises[n]) % 320_000));
-  assert.deepEqual([...periods], [0], 'a frame is 20 ms to the cycle');
+  assert.deepEqual([...periods], [0], 'a frame is exactly 20 ms');
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -12,8 +12,8 @@ export const NORDIC = {
 };
 const MODULE_ADDRESS = '09:09:09:09:09:09';
 const CONFIGURATION_DESCRIPTOR = '00002902-0000-1000-8000-00805f9b34fb';
-/** Bluetooth error code of a module that is out of reach. */
-const OUT_OF_REACH = 0x3e;
+/** Bluetooth error code of a module that is out of range. */
+const OUT_OF_RANGE = 0x3e;
 /** Interval at which written packets are awaited, ms of page time. */
 const STEP_MS = 20;
 
@@ -34,7 +34,7 @@ function prepareRadio() {
     };
   }
   window.sendToPage = (bytes) => {
-    if (!window.isInReach || !window.notifyingCharacteristic) return;
+    if (!window.isInRange || !window.notifyingCharacteristic) return;
     const value = new DataView(Uint8Array.from(bytes).buffer);
     Object.defineProperty(window.notifyingCharacteristic, 'value', { value, configurable: true });
     window.notifyingCharacteristic.dispatchEvent(new Event('characteristicvaluechanged'));
@@ -71,14 +71,14 @@ function prepareRadio() {
 export class Radio {
   /** Lengths of the packets that the emulation has delivered. */
   packetLengths = [];
-  isInReach = true;
+  isInRange = true;
 
   constructor(page, browserSession, pageSession, module) {
     Object.assign(this, { page, browserSession, pageSession, module });
   }
 
   /**
-   * Opens the page with a module in reach. `adapter` is the state of the browser's radio; `isAllowed` is true if the
+   * Opens the page with a module in range. `adapter` is the state of the browser's radio; `isAllowed` is true if the
    * page may use Bluetooth.
    */
   static async open(module, { adapter = 'powered-on', hasRobot = true, isAllowed = true } = {}) {
@@ -99,15 +99,15 @@ export class Radio {
 
   async answerGatt({ type }) {
     if (type === 'discovery') await this.addService();
-    if (type === 'connection' && this.isInReach) await this.connect();
-    const code = this.isInReach ? 0 : OUT_OF_REACH;
+    if (type === 'connection' && this.isInRange) await this.connect();
+    const code = this.isInRange ? 0 : OUT_OF_RANGE;
     await this.browserSession.send('BluetoothEmulation.simulateGATTOperationResponse', { address: MODULE_ADDRESS, type, code }).catch(() => {});
   }
 
   /** Connects the module, which then sends the robot a text without a line end, as an HM-10 does. */
   async connect() {
     await this.page.evaluate(() => {
-      window.isInReach = true;
+      window.isInRange = true;
       window.attachedBoard?.send([...'OK+CONN'].map((letter) => letter.charCodeAt(0)));
     });
   }
@@ -124,7 +124,7 @@ export class Radio {
   async answerCharacteristic({ characteristicId, type, data, writeType }) {
     if (type === 'write') {
       const bytes = [...Buffer.from(data, 'base64')];
-      await this.page.evaluate((bytes) => window.isInReach && window.attachedBoard?.send(bytes), bytes);
+      await this.page.evaluate((bytes) => window.isInRange && window.attachedBoard?.send(bytes), bytes);
       this.packetLengths.push(bytes.length);
     }
     if (writeType === 'write-without-response') return;
@@ -136,7 +136,7 @@ export class Radio {
     for (let remainingMs = ms; remainingMs > 0; remainingMs -= STEP_MS) {
       await this.page.clock.runFor(STEP_MS);
       const waitForArrival = async () => {
-        while (this.isInReach && (await this.page.evaluate(() => window.writeCount)) > this.packetLengths.length) await new Promise((resolve) => setTimeout(resolve, 5));
+        while (this.isInRange && (await this.page.evaluate(() => window.writeCount)) > this.packetLengths.length) await new Promise((resolve) => setTimeout(resolve, 5));
       };
       await withTimeout('packets to arrive', waitForArrival());
     }
@@ -160,27 +160,27 @@ export class Radio {
     else await this.pageSession.send('DeviceAccess.cancelPrompt', { id });
   }
 
-  /** Simulates a phone that sleeps: the page's timers stop, but the robot runs on. */
+  /** Simulates a phone that sleeps: the page's timers stop, but the robot continues. */
   async sleep(ms) {
     await this.page.evaluate((ms) => {
       for (let remainingMs = ms; remainingMs > 0; remainingMs -= 2) window.attachedBoard.run(16_000 * 2);
     }, ms);
   }
 
-  /** Takes the module out of reach. */
-  async takeOutOfReach() {
-    this.isInReach = false;
+  /** Takes the module out of range. */
+  async takeOutOfRange() {
+    this.isInRange = false;
     await this.page.evaluate(() => {
-      window.isInReach = false;
+      window.isInRange = false;
       window.attachedBoard.send([...'OK+LOST'].map((letter) => letter.charCodeAt(0)));
     });
     await this.browserSession.send('BluetoothEmulation.simulateGATTDisconnection', { address: MODULE_ADDRESS });
   }
 
-  async bringBack() {
+  async bringIntoRange() {
     // Failed writes are never delivered.
     await this.page.evaluate((count) => (window.writeCount = count), this.packetLengths.length);
-    this.isInReach = true;
+    this.isInRange = true;
   }
 
   async close() {

@@ -47,7 +47,7 @@ test('a text with a mistake is refused with its line, and the previous robot sta
   assert.equal(await textBoxOf(page).inputValue(), wrongToml, 'nothing that was typed is lost');
 });
 
-test('a refused gait is explained by its effect on the robot, then by its place', async () => {
+test('a refused gait is explained by its effect on the robot, then by its line', async () => {
   const page = await openTextEditor();
   const wrongToml = (await tomlOf(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
   const line = wrongToml.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
@@ -136,7 +136,7 @@ async function scanQrCode(page) {
   return jsQR.default(Uint8ClampedArray.from(data), side, side)?.data;
 }
 
-test('a link holds the robot, also over a reload, and a phone reads it from a QR code', async () => {
+test('a link contains the robot, survives a reload, and is read by a phone from a QR code', async () => {
   const page = await openTextEditor();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const largeToml = await readFile(LARGE, 'utf8');
@@ -226,7 +226,7 @@ test('a hostile file runs no script', async () => {
   assert.deepEqual(dialogs, []);
 });
 
-test('opening a link or another robot puts the user\'s own robot aside, and a button restores it', async () => {
+test('opening a link or another robot stores the user\'s own robot, and a button restores it', async () => {
   const page = await openTextEditor();
   const ownToml = (await tomlOf(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
   await textBoxOf(page).fill(ownToml);
@@ -280,7 +280,7 @@ test('the user\'s own robots are listed by their names, and each is restored unc
     const text = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
     return (await text.catch(() => '')) === expectedText;
   }, tomlNamed('anna'));
-  assert.deepEqual(await readNames(), ['bert'], 'the previous robot is put aside');
+  assert.deepEqual(await readNames(), ['bert'], 'the previous robot is stored');
   await page.reload();
   await waitForRobot(page, tomlNamed('anna'));
   assert.deepEqual(await readNames(), ['bert']);

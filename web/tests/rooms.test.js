@@ -1,4 +1,4 @@
-// The rooms of the page: each has an address, fits its screen, keeps Stop in reach, and draws only while it is open.
+// The rooms of the page: each has an address, fits its screen, keeps Stop within reach, and renders only while it is open.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, afterEach, before, test } from 'node:test';
@@ -31,7 +31,7 @@ const boxOf = (page, selector) => page.evaluate((selector) => document.querySele
 // Colours do not change the layout, so each size is tested with one of the two themes.
 for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n % 2] }))) {
   const { width, height } = options.viewport;
-  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and Stop, and axe-core finds nothing`, async () => {
+  test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and Stop, and has no violations for axe-core`, async () => {
     const page = await openStanding({ ...options, bypassCSP: true });
     await page.addScriptTag({ path: AXE });
     for (const room of ROOMS) {
@@ -107,7 +107,7 @@ test('the three doors of the first screen lead to rooms', async () => {
   }
 });
 
-test('a closed room draws nothing, even if its panels are unfolded', async () => {
+test('a closed room renders nothing, even if its panels are unfolded', async () => {
   const page = await openStanding();
   for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(page, panel);
   await page.locator('#solid').click();

@@ -61,7 +61,7 @@ async function runSeconds(page, seconds) {
   }
 }
 
-test('a drive is recorded by the robot\'s motions, and its replay goes where predicted', async () => {
+test('a drive is recorded by the robot\'s motions, and its replay ends where predicted', async () => {
   const page = await openRoutine(null);
   await page.waitForFunction(() => ['walk', 'left'].every((name) => document.querySelector(`#gaits button[data-command="${name}"] small`).textContent));
   await page.getByText('This robot has no routine yet.').waitFor();
@@ -132,7 +132,7 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
   await page.getByText('Nothing is recorded: the robot has not walked.').waitFor();
 });
 
-test('the recorded number of cycles is that of the walk, at whatever phase of the previous gait it began', async () => {
+test('the recorded number of cycles is that of the walk, whatever the phase of the previous gait at its start', async () => {
   const page = await openRoutine(null);
   for (let tenth = 0; tenth < 10; tenth++) {
     await press(page, 'Record a drive');
@@ -148,7 +148,7 @@ test('the recorded number of cycles is that of the walk, at whatever phase of th
   }
 });
 
-test('a drive of a board is recorded by its own phase, even if its link was cut', async () => {
+test('the drive of a board is recorded by the board\'s own phase, even if its link was cut', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await press(page, 'Record a drive');
@@ -266,7 +266,7 @@ test('a finger drags a step, too', async () => {
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3"]'));
 });
 
-test('a mistake is shown at its block with its line and its step, and the previous robot walks on', async () => {
+test('a mistake is shown at its block with its line and its step, and the previous robot stays in use', async () => {
   const page = await openRoutine();
   const previousToml = await tomlOf(page);
   const line = previousToml.split('\n').findIndex((text) => text.startsWith('steps = ')) + 1;

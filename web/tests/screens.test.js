@@ -136,7 +136,7 @@ for (const [name, viewport] of [
   });
 }
 
-test('on a touch screen no keys are mentioned, and the list of robots shows whole names', async () => {
+test('on a touch screen no keys are mentioned, and the list of robots shows full names', async () => {
   for (const viewport of [{ width: 360, height: 640 }, { width: 844, height: 390 }, { width: 1024, height: 1366 }]) {
     const page = await openStanding({ viewport, hasTouch: true, isMobile: true });
     for (const room of ['drive', 'build', 'board']) {
@@ -150,14 +150,14 @@ test('on a touch screen no keys are mentioned, and the list of robots shows whol
       pen.font = getComputedStyle(list).font;
       const textWidth = Math.max(...['robot', 'large', 'paper'].map((name) => pen.measureText(name).width));
       const { paddingLeft, paddingRight } = getComputedStyle(list);
-      // An arrow is as wide as a letter is high.
+      // The arrow of the list is as wide as a letter is high.
       return list.clientWidth - Number.parseFloat(paddingLeft) - Number.parseFloat(paddingRight) - 18 - textWidth;
     });
     assert.ok(sparePixels >= 0, `${sparePixels} pixels of ${viewport.width}`);
   }
 });
 
-test('a page without JavaScript says what it needs', async () => {
+test('without JavaScript the page says what it needs', async () => {
   const page = await openBlank({ javaScriptEnabled: false });
   await page.goto(address());
   const message = page.locator('noscript p');

@@ -172,7 +172,7 @@ test('a board that does not answer is reported, and no step is a dead end', asyn
   await runUntil(page, 'the simulation is back', async () => /simulated UNO/.test(await text(page, '#where')));
 });
 
-test('a board that sends meaningless bytes is not taken for a robot', async () => {
+test('a board that sends random bytes is not mistaken for a robot', async () => {
   const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => (window.boardSendsGarbage = true));
   await page.locator('#connect').click();
@@ -203,7 +203,7 @@ test('unplugging the board is reported at any step, and the dialog continues whe
     await runUntil(page, `the step ${name} reports it`, async () =>
       /is not connected any more/.test(await text(page, '#setup-said')));
     assert.match(await text(page, '#setup-step'), new RegExp(`^${names.indexOf(name) + 1} of 9`), 'the step is kept');
-    assert.equal(await dialogOf(page).getAttribute('aria-busy'), 'false', 'no action waits for ever');
+    assert.equal(await dialogOf(page).getAttribute('aria-busy'), 'false', 'no action waits forever');
   }
 });
 
@@ -295,7 +295,7 @@ test('leaving restores the robot, and the dialog opens again at the same step', 
   await dialogOf(page).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
 });
 
-test('leaving takes back a setting whose answer was lost, and saving stores what the step shows', async () => {
+test('leaving reverts a setting whose answer was lost, and saving stores the settings that the step shows', async () => {
   const page = await openWithBoard('robot', 4500);
   const previousCalibration = await readCalibration(page);
   const setTrimWithoutAnswer = async () => {
@@ -414,9 +414,9 @@ for (const [name, options] of [
       // The row of steps scrolls, so that the current step's name is visible.
       const currentStep = await page.locator('#setup-steps [aria-current]').evaluate((button) => {
         const { left, right } = button.getBoundingClientRect();
-        return { isVisible: left >= 0 && right <= innerWidth, isWhole: button.scrollWidth <= button.clientWidth, size: Number.parseFloat(getComputedStyle(button).fontSize) };
+        return { isVisible: left >= 0 && right <= innerWidth, isComplete: button.scrollWidth <= button.clientWidth, size: Number.parseFloat(getComputedStyle(button).fontSize) };
       });
-      assert.ok(currentStep.isVisible && currentStep.isWhole && currentStep.size >= 12, JSON.stringify(currentStep));
+      assert.ok(currentStep.isVisible && currentStep.isComplete && currentStep.size >= 12, JSON.stringify(currentStep));
     }
   });
 }

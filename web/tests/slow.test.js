@@ -1,5 +1,5 @@
 // Times that a user waits, in real time; no other test runs beside this file. A busy machine can only make these times
-// longer, so one try within the limit is enough.
+// longer, so one measurement within the limit is enough.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, test } from 'node:test';
 
@@ -9,7 +9,7 @@ before(openBrowser);
 afterEach(closePages);
 after(closeBrowser);
 
-const MAX_TRY_COUNT = 12;
+const MAX_MEASUREMENT_COUNT = 12;
 /** Limit of the time from the request for the page to the robot's first step, at full processor speed. */
 const FIRST_STEP_LIMIT_MS = 1500;
 /** Limit of the time from a press of Stop to the robot's answer, on a processor that is CPU_SLOWDOWN times as slow. */
@@ -20,10 +20,10 @@ const WITH_MOTION = { reducedMotion: 'no-preference' };
 const openDevToolsFor = (page) => withTimeout('the tools of the browser', page.context().newCDPSession(page));
 const isWalking = () => window.lizard?.gait === 'walk';
 
-/** Measures until a time is short enough, at most MAX_TRY_COUNT times, and returns the shortest. */
+/** Measures until a time is short enough, at most MAX_MEASUREMENT_COUNT times, and returns the shortest. */
 async function measureShortest(limitMs, measureMs) {
   let shortestMs = Infinity;
-  for (let n = 0; n < MAX_TRY_COUNT && shortestMs > limitMs; n++) shortestMs = Math.min(shortestMs, await measureMs());
+  for (let n = 0; n < MAX_MEASUREMENT_COUNT && shortestMs > limitMs; n++) shortestMs = Math.min(shortestMs, await measureMs());
   return shortestMs;
 }
 

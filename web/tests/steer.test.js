@@ -13,8 +13,8 @@ async function openPredicted(options = {}) {
   const page = await openPage(options);
   await page.waitForFunction(() => {
     const buttons = [...document.querySelectorAll('#gaits button[data-command]')];
-    const stillGaits = ['stand', 'look'];
-    return buttons.length > 5 && buttons.every((button) => stillGaits.includes(button.dataset.command) || button.querySelector('small').textContent);
+    const stationaryGaits = ['stand', 'look'];
+    return buttons.length > 5 && buttons.every((button) => stationaryGaits.includes(button.dataset.command) || button.querySelector('small').textContent);
   });
   return page;
 }
@@ -52,7 +52,7 @@ test('letter keys drive as arrows do, except in a text field', async () => {
   assert.equal(await page.locator('#doing').textContent(), 'stop');
 });
 
-test('the stick on the screen walks where it is held', async () => {
+test('the robot walks in the direction of the stick on the screen', async () => {
   const page = await openPredicted();
   const stick = page.locator('#stick');
   await stick.scrollIntoViewIfNeeded();
@@ -81,7 +81,7 @@ test('a stick that is deflected by half drives at half the pace, and its release
   await deflectStick(0.5);
   await waitForGait(page, 'walk');
   await waitForPace(40);
-  // A trembling thumb must not change the pace with each picture.
+  // A trembling thumb must not change the pace in each frame.
   await deflectStick(0.7);
   await advance(page, 500);
   await waitForPace(40);
@@ -144,7 +144,7 @@ test('a button of a gamepad stops the robot once, and the stick drives again onl
   await waitForGait(page, 'walk');
 });
 
-test('a button of a gamepad stops a gait that the page began', async () => {
+test('a button of a gamepad stops a gait that was started by a button of the page', async () => {
   const page = await openPredicted();
   await page.locator('#gaits button[data-command="walk"]').click();
   await waitForGait(page, 'walk');
@@ -182,7 +182,7 @@ test('the page opens with the robot walking slowly, unless reduced motion is pre
   assert.equal(await stillPage.locator('#doing').textContent(), 'stand');
 });
 
-test('the robot also walks at first if walk and trot are predicted before the robot\'s banner', async () => {
+test('the robot walks at the start even if walk and trot are predicted before the robot\'s banner', async () => {
   const page = await openPage({ reducedMotion: 'no-preference' }, () => {
     // The predictions do not come with the page, as for a user's own robot.
     const { fetch } = window;

@@ -32,7 +32,7 @@ test('the message about an unreadable robot file stays while the previous robot 
   complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/404/.test(complaint)));
 });
 
-test('a page whose first robot cannot be read says so, and accepts another robot', async () => {
+test('if the first robot cannot be read, the page says so and accepts another robot', async () => {
   const page = await openBlank();
   await page.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await page.goto(address());

@@ -80,7 +80,7 @@ test('without a board the buttons say what is missing', async () => {
   await page.locator('#robot-said', { hasText: 'No board is connected: Connect a board…' }).waitFor();
 });
 
-test('no robot is written behind a firmware that reads another format, and the firmware runs on', async () => {
+test('no robot is written behind a firmware that reads another format, and the firmware keeps running', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
   // Changes the format in the mark after the 26 interrupt vectors.
   await page.evaluate(() => (window.attachedBoard.flash[26 * 4 + 4] ^= 0x40));
@@ -88,7 +88,7 @@ test('no robot is written behind a firmware that reads another format, and the f
   await writeRobotAlone(page);
   await waitForMessage(page, /^not written: the board has lizard [\d.]+ robot large [0-9a-f]{8}, whose robots are of format \d+; this robot is of format \d+: write the firmware, too\. Nothing was written$/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash);
-  await runUntil(page, 'the firmware runs on', async () =>
+  await runUntil(page, 'the firmware is still running', async () =>
     /^on a board on USB with another robot/.test(await text(page, '#where')));
 });
 
@@ -191,7 +191,7 @@ test('an older Nano, whose boot loader has another baud rate, is found, written 
   await runUntil(page, 'the board greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
 });
 
-test('an older Nano that is unplugged while its baud rate is set is reported, and the simulation goes on', async () => {
+test('an older Nano that is unplugged while its baud rate is set is reported, and the simulation continues', async () => {
   const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => {
     let openCount = 0;
