@@ -40,7 +40,7 @@ fn every_body_is_printed_or_bought() {
 }
 
 #[test]
-fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
+fn a_symmetric_robot_has_its_mass_centre_in_the_middle() {
     let (_, paper_bill) = bill_of("paper");
     // Everything except board and supply is symmetric, and board and supply balance each other to within the
     // tolerance.
@@ -56,10 +56,10 @@ fn a_robot_that_is_the_same_on_both_sides_has_its_mass_in_the_middle() {
 }
 
 #[test]
-fn the_mass_in_each_robot_file_is_that_of_its_bill_in_whole_grams() {
+fn the_mass_in_each_robot_file_equals_that_of_its_bill_in_whole_grams() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
-    let files = std::fs::read_dir(folder).expect("robots/");
-    let paths = files.map(|file| file.expect("a file").path());
+    let files = std::fs::read_dir(folder).expect("the folder robots/ is readable");
+    let paths = files.map(|file| file.expect("the folder's entry is readable").path());
     let mut file_count = 0;
     for path in paths.filter(|path| {
         path.extension()
@@ -68,7 +68,7 @@ fn the_mass_in_each_robot_file_is_that_of_its_bill_in_whole_grams() {
         let name = path
             .file_stem()
             .and_then(|name| name.to_str())
-            .expect("a name");
+            .expect("the file name is UTF-8");
         let (assembly, bill) = bill_of(name);
         let body = assembly.robot().ground().body;
         assert_eq!(body, bill.body_values(), "{name}");
@@ -83,7 +83,10 @@ fn the_mass_in_each_robot_file_is_that_of_its_bill_in_whole_grams() {
 #[test]
 fn prices_are_on_every_row_to_buy_and_add_up() {
     let (_, bill) = bill_of("paper");
-    let price_classes = bill.bought.iter().map(|item| item.price.expect("a class"));
+    let price_classes = bill
+        .bought
+        .iter()
+        .map(|item| item.price.expect("each bought item has a price class"));
     assert_eq!(bill.euros, lizard_parts::Price::sum(price_classes));
     assert!(bill.radio.iter().all(|item| item.price.is_some()));
     assert!(bill.printed.iter().all(|item| item.price.is_none()));
@@ -154,42 +157,55 @@ fn a_mass_centre_is_printed_in_words_and_as_toml() {
 #[test]
 fn a_spring_holds_a_leg_against_friction_but_a_caught_foot_stalls_its_servo() {
     let (assembly, bill) = bill_with("paper", SLOTTED_STRUTS_TOML);
-    let hold = bill.hold.expect("springs");
+    let hold = bill.hold.expect("slotted struts have springs");
     let strut_length = 28.5f64.hypot(10.0);
     assert!((assembly.layout().legs[0].strut_length - strut_length).abs() < 1e-9);
     assert!((hold.installed - strut_length - 3.0).abs() < 1e-9);
     // At neutral the angle between the strut and the anchor's arm is 60.8 deg. In walk a leg swings by 20 deg to
     // either side, in look by a little more.
     let angle_deg = 10.0f64.atan2(28.5).to_degrees() + 41.409_622;
-    let lever_at = |swing: f64| 22.0 * (angle_deg + swing).to_radians().sin();
-    let [least_lever, most_lever] = hold.lever;
-    assert!(lever_at(-24.0) < least_lever && least_lever < lever_at(-20.0) + 0.01);
-    assert!(lever_at(20.0) - 0.01 < most_lever && most_lever < 22.0);
+    let lever_arm_at = |swing: f64| 22.0 * (angle_deg + swing).to_radians().sin();
+    let [min_lever_arm, max_lever_arm] = hold.lever;
+    assert!(lever_arm_at(-24.0) < min_lever_arm && min_lever_arm < lever_arm_at(-20.0) + 0.01);
+    assert!(lever_arm_at(20.0) - 0.01 < max_lever_arm && max_lever_arm < 22.0);
     assert!((hold.preload - hold.lever[0] * hold.force).abs() < 1e-9);
     assert!(hold.friction * 1.8 < hold.preload);
     // With foot and body held, the pin reaches the slot's end long before the 40 deg of a walk. The torque there is
     // more than 0.7 of the stall torque of an SG-90.
     assert!(12.0 < hold.way[0] && hold.way[1] < 25.0, "{:?}", hold.way);
     assert!((131.0..160.0).contains(&hold.end[1]) && !hold.lets_servo_turn());
-    // An independent check of the slot's end from the plan of the leg. There the strut is 5 mm longer. The torque is
-    // the spring's force times the derivative of the strut's length by the angle.
+    // An independent check of the slot's end from the plan of the leg. There the strut is 5 mm longer, and the torque
+    // is the spring's force times the derivative of the strut's length with respect to the angle.
     let robot = assembly.robot();
     let stretch_at = |lag: f64| {
         let angle = robot.servos()[1].neutral + 20.0;
         let [from, to] = robot.legs()[1].place_at(angle, angle - lag).strut_anchors;
         (to - from).length() - strut_length
     };
-    let (lag_deg, torque) = robot.drive().strut().expect("a strut").slot_end(1, 20.0);
+    let (lag_deg, torque) = robot
+        .drive()
+        .strut()
+        .expect("the struts are slotted")
+        .slot_end(1, 20.0);
     assert!((stretch_at(lag_deg) - 5.0).abs() < 1e-6, "{lag_deg}");
-    let lever_mm = (stretch_at(lag_deg + 0.01) - stretch_at(lag_deg - 0.01)) / 0.02f64.to_radians();
+    let lever_arm_mm =
+        (stretch_at(lag_deg + 0.01) - stretch_at(lag_deg - 0.01)) / 0.02f64.to_radians();
     let force = hold.force + 5.0 * hold.rate;
-    assert!((torque / (force * lever_mm) - 1.0).abs() < 1e-4, "{torque}");
+    assert!(
+        (torque / (force * lever_arm_mm) - 1.0).abs() < 1e-4,
+        "{torque}"
+    );
     // Only the weakest spring with which the robot still walks lets the servo turn.
     let (_, weak_bill) = bill_with(
         "paper",
         &format!("{SLOTTED_STRUTS_TOML}\nforce = 2.0\nrate = 0.2"),
     );
-    assert!(weak_bill.hold.expect("springs").lets_servo_turn());
+    assert!(
+        weak_bill
+            .hold
+            .expect("slotted struts have springs")
+            .lets_servo_turn()
+    );
 }
 
 #[test]
@@ -248,12 +264,16 @@ fn rigid_struts_are_printed_instead_and_need_no_springs() {
         assert!(text.contains(phrase), "{text}");
     }
     let text = sprung_bill.to_string();
-    let (_, table) = text.split_once("```toml\n").expect("a table");
-    let (drive_toml, _) = table.split_once("\n\n").expect("the drive");
-    // The quoted table makes the same robot.
-    let (same_assembly, _) = bill_with("paper", drive_toml);
-    let [expected, actual] =
-        [sprung_bill.hold, SpringEffect::of(&same_assembly)].map(|hold| hold.expect("springs"));
+    let (_, table) = text
+        .split_once("```toml\n")
+        .expect("the text contains a block of TOML");
+    let (drive_toml, _) = table
+        .split_once("\n\n")
+        .expect("an empty line follows the keys of the drive");
+    // A robot with the quoted keys has the same springs.
+    let (quoted_assembly, _) = bill_with("paper", drive_toml);
+    let [expected, actual] = [sprung_bill.hold, SpringEffect::of(&quoted_assembly)]
+        .map(|hold| hold.expect("slotted struts have springs"));
     assert!(
         (expected.force - actual.force).abs() < 0.01 && (expected.rate - actual.rate).abs() < 0.001
     );

@@ -29,7 +29,7 @@ fn layers_of(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
 }
 
 #[test]
-fn a_servo_goes_into_the_plate_with_its_lead() {
+fn the_plate_has_openings_for_the_servos_with_their_leads() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let servo = assembly.robot().parts().servo;
@@ -95,11 +95,11 @@ fn a_mounted_coil_has_the_length_between_its_hooks_and_lies_in_its_strut() {
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
             // Each hook has the coil's inner diameter and goes around the outer side of an M3 screw.
             let inner_diameter = parts.spring.outer_diameter - 2.0 * parts.spring.wire_diameter;
-            let hung_length =
+            let expected_length =
                 assembly.layout().legs[leg_index].strut_length + 3.0 - 2.0 * inner_diameter;
             assert!(
-                (length - hung_length).abs() < 1e-9,
-                "{name} {leg}: {length} {hung_length}"
+                (length - expected_length).abs() < 1e-9,
+                "{name} {leg}: {length} {expected_length}"
             );
             if name == "paper" {
                 assert!((length - 24.5).abs() < 0.01, "{length}");
@@ -125,7 +125,7 @@ fn a_mounted_coil_has_the_length_between_its_hooks_and_lies_in_its_strut() {
 }
 
 #[test]
-fn a_coil_that_is_too_high_in_its_strut_is_found() {
+fn a_coil_that_is_too_high_in_its_strut_is_refused() {
     let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "spring LF") {
             body.prisms[0].z = body.prisms[0].z.map(|z| z + 0.6);
@@ -133,7 +133,9 @@ fn a_coil_that_is_too_high_in_its_strut_is_found() {
     });
     let has_spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
     let proof = altered_assembly.prove_chosen(has_spring, |_, _| ());
-    let clash = proof.judge().expect_err("it is too near to the link");
+    let clash = proof
+        .judge()
+        .expect_err("the coil must be refused as too near to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }
 
@@ -207,7 +209,7 @@ fn thinnest_wall(part: &Part) -> f64 {
                     .iter()
                     .flat_map(|b| a.iter().map(move |p| (b, p)))
                 {
-                    let distances = b.iter().map(|other| (*other - *point).length());
+                    let distances = b.iter().map(|b_point| (*b_point - *point).length());
                     least_mm = distances.fold(least_mm, f64::min);
                 }
             }
@@ -278,7 +280,9 @@ fn parts_that_look_alike_have_different_marks() {
         };
         let mut marks = Vec::new();
         for part in &parts {
-            let same_noun = parts.iter().filter(|other| noun_of(other) == noun_of(part));
+            let same_noun = parts
+                .iter()
+                .filter(|listed| noun_of(listed) == noun_of(part));
             let is_spacer = part.name.starts_with("spacer");
             let is_unmarked = same_noun.count() == 1 || is_spacer;
             assert_eq!(part.mark.is_empty(), is_unmarked, "{}", part.name);
@@ -297,7 +301,11 @@ fn parts_that_look_alike_have_different_marks() {
         let mark_count = marks.len();
         marks.sort();
         marks.dedup();
-        assert_eq!(marks.len(), mark_count, "{name}: two kinds have one mark");
+        assert_eq!(
+            marks.len(),
+            mark_count,
+            "{name}: two kinds have the same mark"
+        );
         let has_mark = |part: &str, mark: &str| marks.contains(&(part.to_owned(), mark.to_owned()));
         for (part, mark) in match name {
             "unequal" => [("link", "1"), ("link", "2"), ("crank", "3")],
@@ -309,7 +317,7 @@ fn parts_that_look_alike_have_different_marks() {
 }
 
 #[test]
-fn no_hole_of_a_printed_part_begins_in_the_air() {
+fn no_hole_of_a_printed_part_begins_in_mid_air() {
     for name in ["paper", "large", "unequal"] {
         let mut roof_count = 0;
         for part in assembly(name, "").parts() {
@@ -322,7 +330,10 @@ fn no_hole_of_a_printed_part_begins_in_the_air() {
                 let part = &part.name;
                 assert!((top_below - z[0]).abs() < 1e-9, "{name}: {part}");
                 assert!(z[1] > z[0] + 0.01, "{name}: {part}");
-                for hole in outline.loops().filter(|line| line.area() < 0.0) {
+                for hole in outline
+                    .loops()
+                    .filter(|outline_loop| outline_loop.area() < 0.0)
+                {
                     // At some point just beside the hole, the layer below supports this layer.
                     let Some((middle, radius)) = hole.circle() else {
                         continue;

@@ -16,14 +16,15 @@ fn keys_block() -> String {
     let blocks = page.split("```toml\n").skip(1);
     let mut blocks = blocks.filter_map(|rest| rest.split("```").next());
     let block = blocks.find(|block| block.contains("[parts.servo]"));
-    block.expect("a block with [parts.servo]").to_owned()
+    block.expect("a block contains [parts.servo]").to_owned()
 }
 
 #[test]
 fn the_build_page_has_the_default_values() {
     let paper = read_file("robots/paper.toml");
-    let robot = Robot::parse(&format!("{paper}\n{}", keys_block())).expect("docs/build.md");
-    let paper = Robot::parse(&paper).expect("robots/paper.toml");
+    let robot = Robot::parse(&format!("{paper}\n{}", keys_block()))
+        .expect("the keys in docs/build.md are valid");
+    let paper = Robot::parse(&paper).expect("robots/paper.toml is valid");
     // The foot's position, an optional key, is the one that results from the hips.
     let mut parts = *robot.parts();
     assert!(parts.foot.take().is_some());

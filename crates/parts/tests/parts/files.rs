@@ -24,7 +24,7 @@ fn holes_of(body: &Body) -> Vec<(f64, f64)> {
     holes
 }
 
-/// Checks that a body has two holes that are `mm` apart.
+/// Asserts that a body has two holes that are `mm` apart.
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = holes_of(body(assembly, name));
@@ -58,7 +58,7 @@ fn the_distance_between_two_holes_is_the_length_of_the_link() {
         ] {
             let link = format!("link {link}");
             assert_hole_distance(&assembly, &link, crank.hypot(arm));
-            let holes = holes_of(assembly.body(&link).expect("a link"));
+            let holes = holes_of(assembly.body(&link).expect("each servo has a link"));
             for length in [crank, arm] {
                 let is_at_distance =
                     |hole: &(f64, f64)| (hole.0.hypot(hole.1) - length).abs() < 1e-9;
@@ -100,7 +100,7 @@ fn a_rigid_strut_has_the_length_of_a_slotted_one_and_lies_within_it() {
 }
 
 #[test]
-fn the_pivots_of_the_plate_are_where_the_kinematics_has_them() {
+fn the_pivots_of_the_plate_are_where_the_kinematics_places_them() {
     let assembly = assembly("unequal");
     let holes = holes_of(body(&assembly, "plate"));
     for leg in &assembly.layout().legs {
@@ -112,7 +112,7 @@ fn the_pivots_of_the_plate_are_where_the_kinematics_has_them() {
 }
 
 #[test]
-fn the_foot_stands_where_the_contact_model_has_it() {
+fn each_foot_stands_where_the_contact_model_places_it() {
     for name in ["paper", "large", "unequal"] {
         let assembly = assembly(name);
         let robot = assembly.robot();
@@ -156,7 +156,7 @@ fn every_file_is_the_same_on_every_run() {
         let assembly = assembly("unequal");
         let parts = assembly.parts().into_iter();
         parts
-            .flat_map(|part| part_files(&part, 0.2).expect("files"))
+            .flat_map(|part| part_files(&part, 0.2).expect("the part has a closed surface"))
             .collect()
     };
     let (first, second) = (make_files(), make_files());
@@ -165,7 +165,7 @@ fn every_file_is_the_same_on_every_run() {
     let mut paths: Vec<_> = first.iter().map(|file| &file.path).collect();
     paths.sort();
     paths.dedup();
-    assert_eq!(paths.len(), first.len(), "two files have one path");
+    assert_eq!(paths.len(), first.len(), "two files have the same path");
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
     let assembly = assembly("paper");
     let parts = assembly.parts();
     let link = parts.iter().find(|part| part.name == "link A1 A3");
-    let sheets = sheets(link.expect("a link"));
+    let sheets = sheets(link.expect("A1 and A3 have equal links"));
     assert_eq!(sheets.len(), 1);
     let layers = sheets[0].layers.iter();
     let layers: Vec<_> = layers

@@ -52,7 +52,7 @@ fn a_body_is_found_by_its_name_and_has_layers_from_bottom_to_top() {
     names.sort();
     let body_count = names.len();
     names.dedup();
-    assert_eq!(names.len(), body_count, "two bodies have one name");
+    assert_eq!(names.len(), body_count, "two bodies have the same name");
     for body in assembly.bodies() {
         for pair in body.prisms.windows(2) {
             assert_eq!(pair[0].z[1], pair[1].z[0], "{}", body.name);
@@ -62,13 +62,13 @@ fn a_body_is_found_by_its_name_and_has_layers_from_bottom_to_top() {
         }
         for contact in &body.allowed_contacts {
             let is_known = assembly.body(contact).is_some();
-            assert!(is_known, "{} meets {contact}", body.name);
+            assert!(is_known, "{} names {contact}", body.name);
         }
     }
 }
 
 #[test]
-fn pins_meet_the_holes_of_the_parts_that_they_hold() {
+fn pins_are_centred_in_the_holes_of_the_parts_that_they_hold() {
     for name in ROBOTS {
         let assembly = assembly(name, "");
         let mut hole_count = 0;
@@ -77,7 +77,7 @@ fn pins_meet_the_holes_of_the_parts_that_they_hold() {
             for screw in bodies.filter(|body| body.name.starts_with("screw ")) {
                 let shapes = screw.prisms.iter().map(|prism| &prism.filled_shapes[0]);
                 let shank = shapes.min_by(|a, b| a.diameter().total_cmp(&b.diameter()));
-                let shank = shank.expect("a shank");
+                let shank = shank.expect("a screw has layers");
                 let centre = assembly.place(screw.mount, &pose).map(shank.points[0]);
                 for held_name in &screw.allowed_contacts {
                     let held = body(&assembly, held_name);

@@ -6,7 +6,7 @@ use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
 use crate::{ROBOTS, assembly};
 
-/// The bodies that stand for a fitting.
+/// The bodies of a fitting.
 fn bodies_of(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
     let bodies = assembly.bodies().iter();
     bodies
@@ -83,7 +83,7 @@ fn both_named_batteries_fit_into_the_space_of_every_robots_battery() {
 #[test]
 fn screws_and_nuts_that_are_drawn_have_the_sizes_of_their_standards() {
     let screw = lizard_robot::Parts::default().screw;
-    // ISO 7380-1 for M3: head 5.70 x 1.65 mm, drawn up to 0.1 mm higher; DIN 985: 5.5 mm over flats, 4.0 mm high.
+    // ISO 7380-1 for M3: head 5.70 x 1.65 mm, drawn up to 0.1 mm higher; DIN 985: 5.5 mm across flats, 4.0 mm high.
     assert_eq!([screw.diameter, screw.head], [3.0, 5.7]);
     assert!((1.65..1.75).contains(&screw.head_height));
     assert_eq!([screw.nut, screw.nut_height], [5.5, 4.0]);
@@ -106,7 +106,7 @@ fn a_product_size_without_a_drawing_is_marked_as_approximate() {
 fn a_radio_module_of_either_common_size_has_a_place() {
     let assembly = assembly("paper", "");
     let [body] = bodies_of(&assembly, Fitting::RadioSpace)[..] else {
-        panic!("one place")
+        panic!("there is exactly one place for a radio module")
     };
     let [width, length] = extents(&body.prisms[0].filled_shapes[0].points);
     assert!(width >= 16.0 && length >= 37.0, "{width} {length}");
@@ -116,7 +116,7 @@ fn a_radio_module_of_either_common_size_has_a_place() {
 fn no_fitting_covers_a_slot_for_a_cable_tie() {
     // Cable ties go through the deck beside the parts that they hold.
     let assembly = assembly("paper", "");
-    let deck = assembly.body("deck").expect("a deck");
+    let deck = assembly.body("deck").expect("the robot has a deck");
     let is_slot = |cut: &&Shape| {
         let [along_x, along_y] = extents(&cut.points);
         let width_mm = along_x.min(along_y) + 2.0 * cut.radius;

@@ -46,7 +46,7 @@ fn loops_are_closed_where_the_robots_joints_are() {
             }),
         ] {
             let text = mjcf_with(&robot, |scene| scene.strut_spring = strut_spring);
-            let document = Document::parse(&text).expect("well formed");
+            let document = Document::parse(&text).expect("the file is well-formed XML");
             let bodies_by_name = bodies(&document);
             let loops = section_elements(&document, "equality");
             assert_eq!(loops.len(), joints.len());
@@ -64,18 +64,18 @@ fn loops_are_closed_where_the_robots_joints_are() {
 }
 
 #[test]
-fn each_foot_stands_where_the_contact_model_has_it_and_a_longer_foot_is_lower() {
+fn each_foot_stands_where_the_contact_model_places_it_and_a_longer_foot_is_lower() {
     for name in ROBOTS {
         let robot = robot(name);
         let text = mjcf_with(&robot, |scene| scene.excess_lengths = [0.0, 0.6, 0.0, -0.3]);
-        let document = Document::parse(&text).expect("well formed");
+        let document = Document::parse(&text).expect("the file is well-formed XML");
         let bodies_by_name = bodies(&document);
         let feet = robot.ground().feet.positions([0.0; 4]);
         for (servo, excess) in [0.0, 0.6, 0.0, -0.3].into_iter().enumerate() {
             let (placement, foot) = bodies_by_name[&format!("foot {}", LEG_NAMES[servo])];
             let mut geoms = foot.children();
             let pad = geoms.find(|geom| geom.attribute("type") == Some("sphere"));
-            let pad = pad.expect("a pad");
+            let pad = pad.expect("the foot has a spherical pad");
             let [x, y, z] = placement
                 .point(&numbers(pad, "pos"))
                 .map(|coordinate| 1000.0 * coordinate);
@@ -112,7 +112,7 @@ fn pads_of_other_shapes_touch_the_floor_and_light_limbs_keep_the_robots_mass() {
         let text = mjcf_with(&robot("paper"), |scene| {
             (scene.pads, scene.has_shapes) = (pads, false);
         });
-        let document = Document::parse(&text).expect("well formed");
+        let document = Document::parse(&text).expect("the file is well-formed XML");
         let bodies_by_name = bodies(&document);
         let (placement, foot) = &bodies_by_name["foot LF"];
         let geoms: Vec<_> = foot
@@ -156,14 +156,14 @@ fn a_floor_has_its_blocks_its_slope_and_its_friction_on_each_pad() {
         scene.floor.slope = 30.0;
         scene.floor.friction_coefficients = [0.1, 0.2, 0.3, 0.4];
     });
-    let document = Document::parse(&text).expect("well formed");
+    let document = Document::parse(&text).expect("the file is well-formed XML");
     let mut nodes = document.descendants();
     let option = nodes
         .find(|node| node.has_tag_name("option"))
-        .expect("options");
+        .expect("the file has an option element");
     // The floor rises ahead, so half of the weight pulls the robot back at 30 deg.
     let [right, ahead, up] = numbers(option, "gravity")[..] else {
-        panic!("three parts")
+        panic!("gravity has three components")
     };
     assert!(right == 0.0 && (ahead + 0.5 * 9.81).abs() < 0.01, "{ahead}");
     assert!((up + 0.866 * 9.81).abs() < 0.01, "{up}");
@@ -173,7 +173,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_friction_on_each_pad() {
             .filter(|node| node.has_tag_name("geom"))
     };
     let block = geoms().find(|geom| geom.attribute("type") == Some("box"));
-    let block = block.expect("a block");
+    let block = block.expect("the floor has a block");
     let [position, half_size] = ["pos", "size"].map(|attribute| numbers(block, attribute));
     assert_eq!((position[0], position[1]), (0.02, 0.3));
     let euler = numbers(block, "euler");
@@ -185,7 +185,7 @@ fn a_floor_has_its_blocks_its_slope_and_its_friction_on_each_pad() {
     for (leg, friction) in LEG_NAMES.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
         let name = format!("pad {leg}");
         let pad = geoms().find(|geom| geom.attribute("name") == Some(&name));
-        let pad = pad.expect("a pad");
+        let pad = pad.expect("each leg has a pad");
         // Without priority, MuJoCo would use the larger friction of pad and floor.
         assert_eq!(pad.attribute("priority"), Some("1"));
         assert_eq!(numbers(pad, "friction")[0], friction);
@@ -195,17 +195,17 @@ fn a_floor_has_its_blocks_its_slope_and_its_friction_on_each_pad() {
 #[test]
 fn the_sphere_that_touches_the_floor_is_that_of_the_pads_dome() {
     let assembly = Assembly::new(&robot("paper"));
-    let pad = assembly.body("pad LF").expect("a pad");
+    let pad = assembly.body("pad LF").expect("the leg has a pad");
     let text = mjcf_with(&robot("paper"), |_| ());
-    let document = Document::parse(&text).expect("well formed");
+    let document = Document::parse(&text).expect("the file is well-formed XML");
     let mut nodes = document
         .descendants()
         .filter(|node| node.has_tag_name("geom"));
     let sphere = nodes.find(|node| node.attribute("name") == Some("pad LF"));
-    let radius = 1000.0 * numbers(sphere.expect("a sphere"), "size")[0];
+    let radius = 1000.0 * numbers(sphere.expect("the file has the pad's sphere"), "size")[0];
     let parts = assembly.parts();
     let part = parts.iter().find(|part| part.body_names[0] == pad.name);
-    let (layers, _) = part.expect("a pad to print").printed_layers();
+    let (layers, _) = part.expect("the pad is printed").printed_layers();
     let mesh = Mesh::of(&Solid::of(&layers));
     // The printed pad lies on its back, centred on the origin; in the middle is the hole for the screw.
     let top = mesh.corners.iter().fold(0.0, |top, [.., z]| z.max(top));
@@ -249,7 +249,7 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_in_one_direction() {
             rate,
         })
     });
-    let document = Document::parse(&text).expect("well formed");
+    let document = Document::parse(&text).expect("the file is well-formed XML");
     let bodies_by_name = bodies(&document);
     for leg in LEG_NAMES {
         let slot = bodies_by_name[&format!("slot {leg}")].1;
@@ -278,19 +278,19 @@ fn a_servo_has_its_stall_torque_its_largest_rate_and_its_travel() {
     for play in [0.0, 1.0] {
         let robot = robot("unequal");
         let text = mjcf_with(&robot, |scene| scene.play = play);
-        let document = Document::parse(&text).expect("well formed");
+        let document = Document::parse(&text).expect("the file is well-formed XML");
         let motors = section_elements(&document, "actuator");
         assert_eq!(motors.len(), 4);
         for (servo, motor) in motors.iter().enumerate() {
             assert_eq!(motor.attribute("name"), Some(SERVO_NAMES[servo]));
-            let joint_name = motor.attribute("joint").expect("a joint");
+            let joint_name = motor.attribute("joint").expect("a motor names its joint");
             let mut nodes = document.descendants();
             let is_joint = |node: &Node| {
                 node.has_tag_name("joint") && node.attribute("name") == Some(joint_name)
             };
             let joint = nodes.find(is_joint).expect(joint_name);
             let [min_torque, max_torque] = numbers(*motor, "forcerange")[..] else {
-                panic!("two torques")
+                panic!("a force range has two torques")
             };
             // The stall torque of the SG-90, 1.8 kg cm.
             assert!(
@@ -309,14 +309,14 @@ fn a_servo_has_its_stall_torque_its_largest_rate_and_its_travel() {
 }
 
 #[test]
-fn servos_and_joints_are_those_of_the_robot_file() {
+fn the_motors_and_the_friction_of_joints_are_those_of_the_robot_file() {
     let text = include_str!("../../../../robots/paper.toml").replace(
         "[servo.A1]",
         "[joints]\ndrag = 17.0\nslider = 0.5\n[servo]\nmodel = \"copy\"\nvolts = 4.2\nspin_up_ms = 10.0\n[servo.A1]",
     );
-    let robot = Robot::parse(&text).expect("a valid robot");
+    let robot = Robot::parse(&text).expect("the robot is valid");
     let text = mjcf_with(&robot, |_| {});
-    let document = Document::parse(&text).expect("well formed");
+    let document = Document::parse(&text).expect("the file is well-formed XML");
     let joints: Vec<Node> = document
         .descendants()
         .filter(|node| node.has_tag_name("joint"))
@@ -337,7 +337,7 @@ fn servos_and_joints_are_those_of_the_robot_file() {
     let link = joints
         .iter()
         .find(|node| node.attribute("name") == Some("link A1"))
-        .expect("a link");
+        .expect("the link of A1 has a joint");
     let damping = 0.012 * 9.80665 / 400f64.to_radians();
     assert!((numbers(*link, "damping")[0] - damping).abs() < 1e-8);
     assert!((numbers(*link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
@@ -352,23 +352,23 @@ fn servos_and_joints_are_those_of_the_robot_file() {
 #[test]
 fn a_course_has_the_angles_of_its_gait_and_the_times_of_its_last_cycle() {
     let robot = robot("own-gaits");
-    let gait = robot.gait("stride").expect("stride");
+    let gait = robot.gait("stride").expect("the robot has the gait stride");
     let course = Course::of(&robot, gait, 2, 1);
     let (start, period) = (course.measure_start, course.period);
     let text = mjcf_with(&robot, |scene| scene.course = Some(course));
-    let document = Document::parse(&text).expect("well formed");
+    let document = Document::parse(&text).expect("the file is well-formed XML");
     let mut nodes = document.descendants();
     let numeric = nodes.find(|node| node.attribute("name") == Some("cycle"));
-    let numeric = numeric.expect("the cycle");
+    let numeric = numeric.expect("the file states the measured cycles");
     let [cycle_start, cycle_length, cycle_count] = numbers(numeric, "data")[..] else {
-        panic!("two times and a number")
+        panic!("two times and a number describe the measured cycles")
     };
     assert!((cycle_start - start).abs() < 1e-9 && cycle_length == period && period == 0.91);
     assert_eq!(cycle_count, 1.0);
     let mut keys = section_elements(&document, "keyframe");
     let home = keys.pop().and_then(|key| key.attribute("name"));
     assert_eq!(home, Some("home"));
-    let last_time = numbers(*keys.last().expect("frames"), "time")[0];
+    let last_time = numbers(*keys.last().expect("the course has frames"), "time")[0];
     assert!(last_time >= start + period && last_time < start + period + 0.02 + 1e-9);
     for key in keys {
         let time = numbers(key, "time")[0];
@@ -390,10 +390,10 @@ fn a_course_has_the_angles_of_its_gait_and_the_times_of_its_last_cycle() {
 fn the_file_has_the_ratio_of_backward_to_forward_friction() {
     for (name, ratio) in [("paper", 1.0), ("unequal", 1.15), (GRAIN_ROBOT, 1.5)] {
         let text = mjcf_with(&robot(name), |_| {});
-        let document = Document::parse(&text).expect("well formed");
+        let document = Document::parse(&text).expect("the file is well-formed XML");
         let mut nodes = document.descendants();
         let numeric = nodes.find(|node| node.attribute("name") == Some("back over forward"));
-        let numeric = numeric.expect("the ratio");
+        let numeric = numeric.expect("the file states the friction ratio");
         assert_eq!(numbers(numeric, "data"), [ratio], "{name}");
     }
 }
@@ -402,6 +402,6 @@ fn the_file_has_the_ratio_of_backward_to_forward_friction() {
 fn a_model_name_may_contain_any_character() {
     let name = "a <b> & \"c\".toml";
     let text = mjcf_with(&robot("paper"), |scene| scene.name = name.to_owned());
-    let document = Document::parse(&text).expect("well formed");
+    let document = Document::parse(&text).expect("the file is well-formed XML");
     assert_eq!(document.root_element().attribute("model"), Some(name));
 }

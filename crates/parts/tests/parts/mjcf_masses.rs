@@ -10,7 +10,7 @@ use crate::{ROBOTS, robot_with};
 
 /// The mass of all bodies of a MuJoCo file together, g, and their mass centre: forward, left, above the plate, mm.
 pub fn mass_and_centre(text: &str) -> (f64, [f64; 3]) {
-    let document = Document::parse(text).expect("well formed");
+    let document = Document::parse(text).expect("the file is well-formed XML");
     let (mut mass, mut moment) = (0.0, [0.0; 3]);
     let bodies_by_name = bodies(&document);
     for (placement, body) in bodies_by_name.values() {
@@ -32,8 +32,12 @@ pub fn mass_and_centre(text: &str) -> (f64, [f64; 3]) {
 fn robot_with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
-    let (text_before, text_after) = text.split_once("\nmass = ").expect("a mass");
-    let (_, text_after) = text_after.split_once('\n').expect("its line");
+    let (text_before, text_after) = text
+        .split_once("\nmass = ")
+        .expect("the file states a mass");
+    let (_, text_after) = text_after
+        .split_once('\n')
+        .expect("another line follows the mass");
     let keys = format!("\nmass = {mass:.1}\ncentre = [{ahead:.1}, {left:.1}]\n");
     Robot::parse(&format!("{text_before}{keys}{text_after}")).expect(name)
 }
@@ -62,29 +66,29 @@ fn mass_and_mass_centre_are_those_of_robot_toml() {
 }
 
 #[test]
-fn the_mass_that_the_contact_model_gives_a_leg_is_that_of_its_parts() {
+fn the_mass_of_a_leg_in_the_contact_model_matches_that_of_its_parts() {
     for name in ROBOTS {
         let robot = robot_with(name, "");
         let text = mjcf_with(&robot, |_| {});
-        let document = Document::parse(&text).expect("well formed");
+        let document = Document::parse(&text).expect("the file is well-formed XML");
         let ground = robot.ground();
         for leg in LEG_NAMES {
-            let mass_and_lever = |noun: &str| {
+            let mass_and_lever_arm = |noun: &str| {
                 let name = format!("{noun} {leg}");
                 let mut nodes = document.descendants();
                 let body = nodes.find(|node| {
                     node.has_tag_name("body") && node.attribute("name") == Some(&*name)
                 });
-                let inertial = child(body.expect("a part"), "inertial");
+                let inertial = child(body.expect("the leg has this part"), "inertial");
                 let centre = numbers(inertial, "pos");
                 (numbers(inertial, "mass")[0], centre[0].hypot(centre[1]))
             };
             // Foot and coupler move as the pad does. Crank and follower rotate about their pivots, so their mass
             // centres move by a share of the pad's motion.
-            let carried_mass = mass_and_lever("foot").0 + mass_and_lever("leg coupler").0;
-            let turning_masses = ["crank", "follower"].map(mass_and_lever);
+            let carried_mass = mass_and_lever_arm("foot").0 + mass_and_lever_arm("leg coupler").0;
+            let turning_masses = ["crank", "follower"].map(mass_and_lever_arm);
             let turning_masses =
-                turning_masses.map(|(mass, lever)| mass * 1e3 * lever / ground.feet.reach);
+                turning_masses.map(|(mass, lever_arm)| mass * 1e3 * lever_arm / ground.feet.reach);
             let grams = 1e3 * (carried_mass + turning_masses[0] + turning_masses[1]);
             let model_grams = ground.body.leg_mass();
             assert!(

@@ -10,7 +10,7 @@ use roxmltree::{Document, Node};
 /// The positions of the robot's joints at neutral.
 pub fn neutral_solution(robot: &Robot) -> Solution {
     let solution = robot.lizard().solve(&robot.neutral_pose());
-    solution.expect("neutral closes")
+    solution.expect("the linkages close at neutral")
 }
 
 /// The MuJoCo file of a robot whose scene is changed by `change`.
@@ -18,15 +18,15 @@ pub fn mjcf_with(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
     change(&mut scene);
-    mjcf(&assembly, &neutral_solution(robot), &scene).expect("a file")
+    mjcf(&assembly, &neutral_solution(robot), &scene).expect("every part has a closed surface")
 }
 
-/// The numbers in an attribute, separated by blanks.
+/// The numbers in an attribute, separated by spaces.
 pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
     let text = node.attribute(attribute).expect(attribute);
     let fields = text.split(' ');
     fields
-        .map(|field| field.parse().expect("a number"))
+        .map(|field| field.parse().expect("the field is a number"))
         .collect()
 }
 
@@ -66,10 +66,13 @@ pub fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
                 position: parent_placement.point(&numbers(body, "pos")),
                 rotation: parent_placement.rotation + 2.0 * quat[3].atan2(quat[0]),
             };
-            let name = body.attribute("name").expect("a name").to_owned();
+            let name = body
+                .attribute("name")
+                .expect("the body has a name")
+                .to_owned();
             assert!(
                 found_bodies.insert(name, (placement, body)).is_none(),
-                "two bodies have one name"
+                "two bodies have the same name"
             );
             add_child_bodies(body, placement, found_bodies);
         }

@@ -17,7 +17,7 @@ fn urdf_and_sdf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2],
     let assembly = Assembly::new(robot);
     let mut scene = Scene::of(&assembly);
     change(&mut scene);
-    let pieces = Pieces::of(&assembly, &scene).expect("pieces");
+    let pieces = Pieces::of(&assembly, &scene).expect("every part has a closed surface");
     let solution = neutral_solution(robot);
     let names = pieces.meshes(&scene).into_iter().map(|mesh| mesh.path);
     let texts = [
@@ -35,15 +35,18 @@ fn text_of(node: Node, tag: &str) -> String {
 fn parse_floats(text: &str) -> Vec<f64> {
     let fields = text.split(' ');
     fields
-        .map(|field| field.parse().expect("a number"))
+        .map(|field| field.parse().expect("the field is a number"))
         .collect()
 }
 
-/// The child elements with a tag, by their name attributes. Fails if a name contains a blank or occurs twice.
+/// The child elements with a tag, by their name attributes. Fails if a name contains a space or occurs twice.
 fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
     let mut nodes = BTreeMap::new();
     for node in parent.children().filter(|node| node.has_tag_name(tag)) {
-        let name = node.attribute("name").expect("a name").to_owned();
+        let name = node
+            .attribute("name")
+            .expect("the element has a name")
+            .to_owned();
         assert!(!name.contains(' '), "{name}");
         assert!(nodes.insert(name.clone(), node).is_none(), "two of {name}");
     }
@@ -77,7 +80,7 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
     );
     let link_of = |joint: &Node, tag: &str| {
         let link = child(*joint, tag).attribute("link");
-        link.expect("a link").to_owned()
+        link.expect("the joint names a link").to_owned()
     };
     let placement_of = |link: &str| {
         let (mut link, mut poses_to_root) = (link.to_owned(), Vec::new());
@@ -89,7 +92,7 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
             poses_to_root.push([numbers(origin, "xyz"), numbers(origin, "rpy")].concat());
             link = link_of(joint, "parent");
         }
-        assert_eq!(link, "base_link", "one root");
+        assert_eq!(link, "base_link", "base_link is the only root");
         poses_to_root
             .iter()
             .rev()
@@ -124,7 +127,10 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
         let pose = child(links[name], "pose");
         let frame = pose.attribute("relative_to");
         let frame = frame.map_or(WORLD, |parent| placement_of(links, parent));
-        frame_on(frame, &parse_floats(pose.text().expect("six numbers")))
+        frame_on(
+            frame,
+            &parse_floats(pose.text().expect("the pose has a text")),
+        )
     }
     let mut read_bodies = BTreeMap::new();
     for (name, link) in &links {
@@ -159,10 +165,11 @@ fn urdf_and_sdf_have_the_bodies_of_the_mujoco_file_with_x_forward() {
             let change =
                 |scene: &mut Scene| (scene.strut_spring, scene.play) = (strut_spring, play);
             let text = mjcf_with(&robot, change);
-            let document = Document::parse(&text).expect("well formed");
+            let document = Document::parse(&text).expect("the file is well-formed XML");
             let expected = bodies(&document);
             let ([urdf, sdf], _) = urdf_and_sdf(&robot, change);
-            let [urdf, sdf] = [&urdf, &sdf].map(|text| Document::parse(text).expect("well formed"));
+            let [urdf, sdf] = [&urdf, &sdf]
+                .map(|text| Document::parse(text).expect("the file is well-formed XML"));
             for read_bodies in [read_urdf(&urdf), read_sdf(&sdf)] {
                 assert_eq!(read_bodies.len(), expected.len());
                 for (name, (expected_placement, body)) in &expected {
@@ -193,7 +200,7 @@ fn urdf_and_sdf_have_the_bodies_of_the_mujoco_file_with_x_forward() {
 fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
     for name in ROBOTS {
         let ([urdf, _], _) = urdf_and_sdf(&robot_with(name, ""), |_| {});
-        let document = Document::parse(&urdf).expect("well formed");
+        let document = Document::parse(&urdf).expect("the file is well-formed XML");
         let (links, joints) = (
             read_urdf(&document),
             elements_by_name(document.root_element(), "joint"),
@@ -201,7 +208,9 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
         let point_of = |name: &str| {
             let joint = joints[&format!("{name}_joint")];
             assert_eq!(joint.attribute("type"), Some("fixed"));
-            let parent = child(joint, "parent").attribute("link").expect("a link");
+            let parent = child(joint, "parent")
+                .attribute("link")
+                .expect("the joint names a link");
             links[parent]
                 .0
                 .point(&numbers(child(joint, "origin"), "xyz"))
@@ -225,7 +234,8 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
 fn servos_have_their_names_ranges_torques_and_rates_in_urdf_and_sdf() {
     let robot = robot_with("unequal", "");
     let ([urdf, sdf], _) = urdf_and_sdf(&robot, |_| {});
-    let [urdf, sdf] = [&urdf, &sdf].map(|text| Document::parse(text).expect("well formed"));
+    let [urdf, sdf] =
+        [&urdf, &sdf].map(|text| Document::parse(text).expect("the file is well-formed XML"));
     let model = child(sdf.root_element(), "model");
     let (urdf_joints, sdf_joints) = (
         elements_by_name(urdf.root_element(), "joint"),
@@ -259,10 +269,10 @@ fn servos_have_their_names_ranges_torques_and_rates_in_urdf_and_sdf() {
 }
 
 #[test]
-fn every_mesh_named_in_urdf_and_sdf_is_made_and_no_other() {
+fn exactly_the_meshes_named_in_urdf_and_sdf_are_made() {
     let (texts, meshes) = urdf_and_sdf(&robot_with("paper", ""), |_| {});
     for text in &texts {
-        let document = Document::parse(text).expect("well formed");
+        let document = Document::parse(text).expect("the file is well-formed XML");
         let urdf_names = document
             .descendants()
             .filter_map(|node| node.attribute("filename"));
@@ -271,7 +281,11 @@ fn every_mesh_named_in_urdf_and_sdf_is_made_and_no_other() {
             .filter(|node| node.has_tag_name("uri"));
         let mesh_names: BTreeSet<String> = urdf_names
             .chain(uri_nodes.filter_map(|node| node.text()))
-            .map(|name| name.strip_prefix("at/").expect("the folder").to_owned())
+            .map(|name| {
+                name.strip_prefix("at/")
+                    .expect("the mesh is in the folder at/")
+                    .to_owned()
+            })
             .collect();
         assert_eq!(mesh_names, meshes);
     }

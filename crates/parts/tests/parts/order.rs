@@ -55,7 +55,7 @@ fn blocked_screws(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOper
 }
 
 #[test]
-fn a_wrong_order_is_found() {
+fn a_wrong_order_is_detected() {
     assert_eq!(blocked_screws(|_| ()), []);
     // A link's screws are inserted from below after the struts are under it.
     let late_screws = blocked_screws(|steps| {
@@ -74,7 +74,7 @@ fn a_wrong_order_is_found() {
 }
 
 #[test]
-fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
+fn a_pad_without_a_hole_for_the_key_is_detected_when_the_feet_are_levelled() {
     let glued_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let is_pad = |body: &&mut Body| body.name == "pad LF";
         for body in bodies.iter_mut().filter(is_pad) {
@@ -83,7 +83,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
     });
     let blocked_screw = glued_assembly
         .access_poses(&steps_of(&glued_assembly))
-        .expect_err("the key has no way");
+        .expect_err("the pad must be reported as an obstacle");
     assert_eq!(
         (&*blocked_screw.screw, blocked_screw.operation),
         ("screw height LF", ScrewOperation::Turn)
@@ -92,7 +92,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
     // The check finds the pad both in the step that mounts it and in the step that levels the feet.
     let steps = steps_of(&glued_assembly);
     let level_step = steps.iter().position(|step| step.title == "Level the feet");
-    let level_step = 1 + level_step.expect("a step");
+    let level_step = 1 + level_step.expect("a step levels the feet");
     let blocked_screws = glued_assembly.blocked_screws(&steps, &neutral_solution(&glued_assembly));
     let is_pad_blocking = |step| {
         blocked_screws
@@ -106,7 +106,7 @@ fn a_pad_without_a_hole_for_the_key_is_found_when_the_feet_are_levelled() {
 }
 
 #[test]
-fn a_strut_under_a_head_is_found() {
+fn a_strut_under_a_head_is_detected() {
     // Hexagonal heads, which pockets hold, are replaced by heads that a key must hold from below.
     let altered_assembly = slotted_assembly("unequal", "").with_changed_bodies(|bodies| {
         for body in bodies {
@@ -116,7 +116,7 @@ fn a_strut_under_a_head_is_found() {
         }
     });
     let blocked_screw = altered_assembly.access_poses(&steps_of(&altered_assembly));
-    let blocked_screw = blocked_screw.expect_err("no key gets there");
+    let blocked_screw = blocked_screw.expect_err("the strut must be reported as an obstacle");
     assert_eq!(
         (&*blocked_screw.screw, blocked_screw.operation),
         ("screw tip A4", ScrewOperation::Turn)
@@ -129,7 +129,7 @@ fn a_robot_with_a_screw_that_is_covered_at_every_pose_is_refused() {
     let covered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         // A board as large as the plate, above the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
-        let mut lid = plate.expect("a plate");
+        let mut lid = plate.expect("the robot has a plate");
         lid.name = "deck lid".to_owned();
         for prism in &mut lid.prisms {
             prism.cut_shapes.clear();
@@ -139,7 +139,7 @@ fn a_robot_with_a_screw_that_is_covered_at_every_pose_is_refused() {
     });
     let blocked_screw = covered_assembly
         .access_poses(&steps_of(&covered_assembly))
-        .expect_err("a lid");
+        .expect_err("the lid must be reported as an obstacle");
     assert_eq!(blocked_screw.obstacle, "deck lid");
     let message = BuildProblem::from(blocked_screw).to_string();
     let expected = "at step 3 of the guide: deck lid is in the way, at every pose";
@@ -168,7 +168,7 @@ fn parts_that_move_together_do_not_overlap() {
     });
     let message = altered_assembly
         .check_dimensions()
-        .expect_err("they overlap")
+        .expect_err("the overlap must be refused")
         .to_string();
     let expected = "deck and screw standoff 1 above, which move together, overlap by 0.5";
     assert!(message.contains(expected), "{message}");
@@ -176,7 +176,7 @@ fn parts_that_move_together_do_not_overlap() {
 
 /// An independent check of free space, with the layers' outlines tested point by point.
 #[test]
-fn above_a_head_that_can_be_reached_there_is_no_material() {
+fn there_is_no_material_above_a_head_that_can_be_reached() {
     for name in ["paper", "unequal"] {
         let assembly = slotted_assembly(name, "");
         let pose = neutral_solution(&assembly);

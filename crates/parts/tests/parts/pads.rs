@@ -19,17 +19,20 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
     let parts = assembly.parts();
     let is_pad = |part: &&Part| part.is_flexible;
     let [pad] = parts.iter().filter(is_pad).collect::<Vec<_>>()[..] else {
-        panic!("one kind of pad");
+        panic!("there is exactly one kind of pad");
     };
     assert_eq!(pad.count(), 4);
     let (layers, closed_count) = pad.printed_layers();
     assert_eq!(closed_count, 1, "the hole for the key, as in a plain pad");
-    let notch = notch_of(&layers).expect("a notch in the file");
+    let notch = notch_of(&layers).expect("the printed pad has a notch");
     // A second pose is also checked, because a foot never turns.
     let poses = [[0.0; 4], [9.0, -8.0, 7.0, -6.0]].map(|turns| {
         let angles: [f64; 4] = assembly.robot().neutral_pose().into();
         let angles = std::array::from_fn(|servo| angles[servo] + turns[servo]);
-        assembly.robot().solve_if_allowed(angles).expect("a pose")
+        assembly
+            .robot()
+            .solve_if_allowed(angles)
+            .expect("the guard accepts the pose")
     });
     for (pose, leg) in poses
         .iter()
@@ -106,7 +109,7 @@ fn a_strip_that_its_pad_cannot_carry_is_refused() {
 }
 
 #[test]
-fn the_guide_of_a_robot_with_strips_says_how_they_are_glued_and_turned() {
+fn only_the_guide_of_a_robot_with_strips_says_how_to_glue_and_turn_them() {
     for (name, has_strip) in [("paper", false), (GRAIN_ROBOT, true)] {
         let assembly = assembly(name, "");
         let pose = neutral_solution(&assembly);
@@ -119,9 +122,10 @@ fn the_guide_of_a_robot_with_strips_says_how_they_are_glued_and_turned() {
             strips.map(|item| item.count).sum::<usize>(),
             4 * usize::from(has_strip)
         );
-        let files = documents(&assembly, &bill, &pose).expect("a guide");
+        let files = documents(&assembly, &bill, &pose).expect("every screw can be reached");
         let text = files.iter().find(|file| file.path.ends_with("guide.md"));
-        let text = String::from_utf8_lossy(&text.expect("the guide").bytes).into_owned();
+        let text = String::from_utf8_lossy(&text.expect("the documents contain the guide").bytes)
+            .into_owned();
         for phrase in [
             "folded up and glued into the notch",
             "point straight to the head",

@@ -79,29 +79,31 @@ fn assert_bounds_hold(name: &str) {
         );
     }
     for pair in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
-        let Some(seen) = &pair.seen else { continue };
-        let accepted = assembly.robot().solve_if_allowed(seen.pose);
+        let Some(clearance) = &pair.seen else {
+            continue;
+        };
+        let accepted = assembly.robot().solve_if_allowed(clearance.pose);
         assert!(accepted.is_some(), "{name}: {pair}");
-        assert!(pair.proved <= seen.mm, "{name}: {pair}");
+        assert!(pair.proved <= clearance.mm, "{name}: {pair}");
         // The proven bound is not much below the least distance found, except near poses that the guard barely
         // accepts.
-        let is_close = seen.mm < pair.proved.max(0.0) * 2.1 + 0.02;
+        let is_close = clearance.mm < pair.proved.max(0.0) * 2.1 + 0.02;
         assert!(is_close || pair.doubt.is_some(), "{name}: {pair}");
     }
 }
 
 #[test]
-fn the_papers_robot_fits_and_no_pose_is_nearer_than_proved() {
+fn the_papers_robot_fits_and_no_distance_is_below_its_proved_bound() {
     assert_bounds_hold("paper");
 }
 
 #[test]
-fn the_large_robot_fits_and_no_pose_is_nearer_than_proved() {
+fn the_large_robot_fits_and_no_distance_is_below_its_proved_bound() {
     assert_bounds_hold("large");
 }
 
 #[test]
-fn the_unequal_robot_fits_and_no_pose_is_nearer_than_proved() {
+fn the_unequal_robot_fits_and_no_distance_is_below_its_proved_bound() {
     assert_bounds_hold("unequal");
 }
 
@@ -114,7 +116,7 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
         assert_eq!(proof.judge(), Ok(()), "{kind}");
         proof
             .nearest_separate_pair()
-            .expect("something is near")
+            .expect("some pair is near")
             .proved
     });
     assert!(rigid_gap >= sprung_gap, "{rigid_gap} {sprung_gap}");
@@ -152,8 +154,8 @@ fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
 #[test]
 fn every_file_of_robots_is_tested() {
     let folder = format!("{}/../../robots", env!("CARGO_MANIFEST_DIR"));
-    let files = std::fs::read_dir(folder).expect("robots/");
-    let names = files.map(|file| file.expect("a file").file_name());
+    let files = std::fs::read_dir(folder).expect("the folder robots/ is readable");
+    let names = files.map(|file| file.expect("the folder's entry is readable").file_name());
     let expected = ROBOTS.into_iter().chain([GRAIN_ROBOT]);
     let expected = expected.map(|name| format!("{name}.toml").into());
     assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(expected));
@@ -162,10 +164,10 @@ fn every_file_of_robots_is_tested() {
 /// The worst clash among the pairs that include a body for which `is_chosen` is true.
 fn find_clash(assembly: &Assembly, is_chosen: impl Fn(&Body) -> bool) -> Clash {
     let proof = assembly.prove_chosen(|a, b| is_chosen(a) || is_chosen(b), |_, _| ());
-    proof.judge().expect_err("nothing is found")
+    proof.judge().expect_err("the proof must find a clash")
 }
 
-/// Checks that a clash is an overlap of two bodies whose names begin with the given texts, in either order.
+/// Asserts that a clash is an overlap of two bodies whose names begin with the given texts, in either order.
 #[track_caller]
 fn assert_overlap(clash: Clash, first: &str, second: &str) {
     let Clash::Overlap(clearance) = clash else {
@@ -178,7 +180,7 @@ fn assert_overlap(clash: Clash, first: &str, second: &str) {
 }
 
 #[test]
-fn a_wrong_dimension_is_found() {
+fn an_overlap_due_to_a_wrong_dimension_is_detected() {
     for (parts_line, prefix, first, second) in [
         ("bar = 20.0", "link", "link A", ""),
         ("pivot = [22.0, 6.0]", "crank", "crank", "plate"),
@@ -219,7 +221,7 @@ fn with_longer_screw(name: &str, extra_mm: f64, extends_down: bool) -> Assembly 
 }
 
 #[test]
-fn a_screw_that_is_too_long_is_found() {
+fn a_screw_that_is_too_long_is_detected() {
     for (name, extra_mm, extends_down, obstacle) in [
         ("screw tip A1", 8.0, true, "strut LF"),
         ("screw foot LF 2", 3.0, false, "follower LF"),
@@ -237,8 +239,8 @@ fn a_screw_that_is_too_long_is_found() {
 }
 
 #[test]
-fn swapped_layers_are_found() {
-    // The layers of the head's upper and lower coupler are swapped.
+fn swapped_layers_are_detected() {
+    // The head's upper and lower coupler exchange their heights.
     let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let index_of = |name: &str| {
             bodies
@@ -256,7 +258,7 @@ fn swapped_layers_are_found() {
 }
 
 #[test]
-fn a_hole_beside_its_pin_is_found() {
+fn a_hole_beside_its_pin_is_detected() {
     let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
             for cut in &mut body.prisms[0].cut_shapes {
@@ -323,7 +325,7 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
         // Each side of the rod has a clearance of 0.2 mm in the bore.
         assert_eq!(proof.touching_pairs.len(), 2);
         for pair in &proof.touching_pairs {
-            let gap = pair.seen.as_ref().expect("they are near").mm;
+            let gap = pair.seen.as_ref().expect("the rod is near its sleeve").mm;
             assert!((gap - assembly.robot().parts().fit).abs() < 1e-9, "{pair}");
         }
     }
@@ -340,7 +342,7 @@ fn a_struts_screw_has_clearance_along_its_whole_slot() {
         .cut_shapes
         .iter()
         .filter(|cut| cut.points.len() == 2);
-    let slot = slots.find(is_at_screw).expect("a slot");
+    let slot = slots.find(is_at_screw).expect("the strut has a slot");
     for step in 0..=10 {
         let travel = 5.0 * f64::from(step) / 10.0;
         let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw_radius);
@@ -352,6 +354,6 @@ fn a_struts_screw_has_clearance_along_its_whole_slot() {
 }
 
 #[test]
-fn the_least_distance_is_at_least_a_printers_error() {
+fn the_least_allowed_distance_is_at_least_a_printers_error() {
     assert!(MIN_GAP_MM >= slotted_assembly("paper", "").robot().parts().fit);
 }
