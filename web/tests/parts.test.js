@@ -1,5 +1,5 @@
-// The parts in the page equal those of `lizard parts`: the same files and the same steps of the guide. They are shown in
-// the robot's pose, and loaded only when their panel is opened.
+// The parts in the page equal those of `lizard parts`: the same files and the same steps of the guide. They are shown
+// in the robot's pose, and loaded only when their panel is opened.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';

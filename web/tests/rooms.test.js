@@ -1,4 +1,5 @@
-// The rooms of the page: each has an address, fits its screen, keeps Stop within reach, and renders only while it is open.
+// The rooms of the page: each has an address, fits its screen, keeps Stop within reach, and renders only while it
+// is open.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, afterEach, before, test } from 'node:test';
