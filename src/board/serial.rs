@@ -204,7 +204,7 @@ fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
 fn USART_RX() {
     // SAFETY: the handler reads UCSR0A and UDR0, which main never touches.
     let usart = unsafe { &*USART0::ptr() };
-    // The status belongs to the byte that UDR0 gives next.
+    // The status belongs to the byte that is read next from UDR0.
     let status = usart.ucsr0a.read();
     let mut byte = usart.udr0.read().bits();
     if status.fe0().bit_is_set() {

@@ -47,8 +47,8 @@ pub fn feed() {
 fn WDT() {
     kept::mark_hung();
     pulses::hush();
-    // SAFETY: every enabled interrupt has a handler. This one does not come again, because the
-    // chip has disabled it, and it never returns.
+    // SAFETY: every enabled interrupt has a handler. This interrupt does not recur, because the
+    // chip has disabled it, and this handler never returns.
     unsafe { avr_device::interrupt::enable() };
     loop {
         avr_device::asm::nop();

@@ -37,7 +37,7 @@ enum PendingLine {
     Notice(Notice),
     /// The reason why the guard holds the robot.
     HoldReason,
-    /// The pose report that `watch` asked for.
+    /// The pose report that `watch` requested.
     PoseReport,
 }
 

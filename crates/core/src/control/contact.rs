@@ -4,8 +4,8 @@
 //! it has held for three successive frames, at most 60 ms after it began.
 //!
 //! A button that is stuck must not start the robot. So a step that waits for a contact ends only if the contact was
-//! open at some time during the step and then closes. In contrast, a step that goes on until there is an obstacle also
-//! ends if the obstacle is there from the start.
+//! open at some time during the step and then closes. In contrast, a step that continues until there is an obstacle
+//! also ends if the obstacle is there from the start.
 
 use crate::numbers::gaits::Input;
 

@@ -240,7 +240,7 @@ impl Controller {
             .worst_voltage(&self.motion.robot().supplies())
     }
 
-    /// The present activity: the running routine, unless it rests; otherwise the motion's.
+    /// The current activity: the running routine, unless it rests; otherwise the motion's.
     pub fn activity(&self) -> Activity {
         if self.routine.is_under_way() && !self.motion.is_resting() {
             Activity::Gait(self.routine.id)
@@ -250,7 +250,7 @@ impl Controller {
     }
 
     /// The robot's state, as a column of the supervisor's table. A routine counts as walking
-    /// even while it stands or rests, since it goes on by itself.
+    /// even while it stands or rests, since it continues by itself.
     fn state(&self) -> State {
         if self.routine.is_under_way() {
             return State::Walking;

@@ -15,7 +15,7 @@ pub enum Fault {
     Link,
     /// The program hung and was restarted.
     Watchdog,
-    /// An edge of a pulse came late. A late rising edge is left out, so its pulse is
+    /// A pulse edge was late. A late rising edge is left out, so its pulse is
     /// missing; a late falling edge makes its pulse longer.
     LateEdge,
     /// The stack has grown into the data.

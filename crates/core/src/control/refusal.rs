@@ -12,7 +12,7 @@ pub enum Refusal {
     Resting,
     /// With the new settings, this servo would not reach a sweep that the gaits need.
     TravelTooNarrow(Servo),
-    /// With the new settings, the present pose or the target would be outside the travel of this servo.
+    /// With the new settings, the current pose or the target would be outside the travel of this servo.
     PoseOutsideTravel(Servo),
     /// The supply is too low.
     Supply,

@@ -133,7 +133,7 @@ impl Safety {
         self.fault
     }
 
-    /// The supply's present level and reading.
+    /// The supply's current level and reading.
     pub const fn supply(&self) -> &Supply {
         &self.supply
     }
@@ -179,7 +179,7 @@ impl Safety {
             self.boot_timer += 1;
             if self.boot_timer == FRAMES_TO_BOOT
                 && self.fault.is_none()
-                && self.response(Event::Boot, state) == Response::Obey
+                && self.response(Event::BootDue, state) == Response::Obey
             {
                 self.silence_ms = 0;
                 reaction = Reaction::Boot;
@@ -193,8 +193,8 @@ impl Safety {
             self.notify(Notice::Supply);
             reaction = reaction.max(match self.supply.level() {
                 Level::Good | Level::Slow => Reaction::None,
-                Level::Stop => self.handle_event(Event::TooLowToMove, state),
-                Level::Rest => self.handle_event(Event::TooLowToHold, state),
+                Level::Stop => self.handle_event(Event::SupplyTooLowToMove, state),
+                Level::Rest => self.handle_event(Event::SupplyTooLowToHold, state),
             });
         }
         if health.late_edges != self.handled_late_edges {

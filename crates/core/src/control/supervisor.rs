@@ -33,20 +33,21 @@ pub enum Event {
     Rest,
     /// The command `save`.
     Save,
-    /// Three seconds have passed since the program started, without a received byte or a fault.
-    Boot,
+    /// The `boot` action is due: three seconds have passed since the program started, without a received byte or a
+    /// fault.
+    BootDue,
     /// No command has been received for the time that `deadman` sets.
     Silence,
     /// The supply has become too low to move.
-    TooLowToMove,
+    SupplyTooLowToMove,
     /// The supply has become too low to hold a pose.
-    TooLowToHold,
-    /// An edge of a pulse came late.
+    SupplyTooLowToHold,
+    /// A pulse edge was late.
     LateEdge,
     /// The stack has grown into the data.
     StackOverflow,
     /// The next pose would not be safe.
-    Unsafe,
+    UnsafePose,
 }
 
 /// The supervisor's response to an event.
@@ -79,13 +80,13 @@ impl Event {
         Self::Stop,
         Self::Rest,
         Self::Save,
-        Self::Boot,
+        Self::BootDue,
         Self::Silence,
-        Self::TooLowToMove,
-        Self::TooLowToHold,
+        Self::SupplyTooLowToMove,
+        Self::SupplyTooLowToHold,
         Self::LateEdge,
         Self::StackOverflow,
-        Self::Unsafe,
+        Self::UnsafePose,
     ];
 }
 
@@ -93,7 +94,8 @@ impl Event {
 /// before it has been measured.
 #[rustfmt::skip]
 pub const fn response(event: Event, supply: Option<Level>, state: State) -> Response {
-    use Event::{Boot, LateEdge, Move, Rest, Save, Silence, StackOverflow, Stand, Stop, TooLowToHold, TooLowToMove, Unsafe};
+    use Event::{BootDue, LateEdge, Move, Rest, Save, Silence, StackOverflow, Stand, Stop, UnsafePose};
+    use Event::{SupplyTooLowToHold, SupplyTooLowToMove};
     use Response::{EndPulses, Freeze, Nothing, Obey, RefuseResting, RefuseSupply};
     let can_move = matches!(supply, None | Some(Level::Good | Level::Slow));
     // Before the first measurement an order to write is accepted; the write waits for the measurement.
@@ -108,14 +110,14 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
         Rest                     => [Nothing,                 Obey,                    Obey],
         Save if can_write        => [Obey,                    Obey,                    Obey],
         Save                     => [RefuseSupply,            RefuseSupply,            RefuseSupply],
-        Boot if can_move         => [Obey,                    Obey,                    Obey],
-        Boot                     => [Nothing,                 Nothing,                 Nothing],
+        BootDue if can_move      => [Obey,                    Obey,                    Obey],
+        BootDue                  => [Nothing,                 Nothing,                 Nothing],
         Silence                  => [Nothing,                 Nothing,                 Freeze(Fault::Link)],
-        TooLowToMove             => [Freeze(Fault::Supply),   Freeze(Fault::Supply),   Freeze(Fault::Supply)],
-        TooLowToHold             => [EndPulses(Fault::Supply), EndPulses(Fault::Supply), EndPulses(Fault::Supply)],
+        SupplyTooLowToMove       => [Freeze(Fault::Supply),   Freeze(Fault::Supply),   Freeze(Fault::Supply)],
+        SupplyTooLowToHold       => [EndPulses(Fault::Supply), EndPulses(Fault::Supply), EndPulses(Fault::Supply)],
         LateEdge                 => [Freeze(Fault::LateEdge), Freeze(Fault::LateEdge), Freeze(Fault::LateEdge)],
         StackOverflow            => [Freeze(Fault::Stack),    Freeze(Fault::Stack),    Freeze(Fault::Stack)],
-        Unsafe                   => [Nothing,                 Freeze(Fault::Guard),    Freeze(Fault::Guard)],
+        UnsafePose               => [Nothing,                 Freeze(Fault::Guard),    Freeze(Fault::Guard)],
     };
     match state {
         State::Resting => resting,

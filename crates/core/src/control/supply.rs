@@ -54,9 +54,9 @@ pub struct Voltage {
 pub struct Supply {
     reading: Reading,
     level: Level,
-    /// Consecutive frames whose readings are at a worse level, or at a better one, than the present level.
+    /// Consecutive frames whose readings are at a worse level, or at a better one, than the current level.
     frames_at_other_level: u8,
-    /// The level of these frames that is nearest to the present one.
+    /// The level of these frames that is nearest to the current one.
     nearest_other_level: Level,
     /// The number of valid readings so far, up to [`FRAMES_TO_WORSEN`].
     reading_count: u8,
@@ -155,17 +155,17 @@ impl Supply {
         self.reading
     }
 
-    /// The present level.
+    /// The current level.
     pub const fn level(&self) -> Level {
         self.level
     }
 
-    /// True if the last reading confirms the present level; false in a dip, and before the level changes.
+    /// True if the last reading confirms the current level; false in a dip, and before the level changes.
     pub const fn is_steady(&self) -> bool {
         self.frames_at_other_level == 0
     }
 
-    /// The present level; `None` until enough frames have measured it.
+    /// The current level; `None` until enough frames have measured it.
     pub const fn measured_level(&self) -> Option<Level> {
         if self.reading_count < FRAMES_TO_WORSEN {
             None

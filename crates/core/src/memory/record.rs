@@ -81,7 +81,7 @@ enum ByteState {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordWrite {
     address: Address,
-    /// The present step: step 0 removes the mark, each of the next steps writes a byte, and the last step writes
+    /// The current step: step 0 removes the mark, each of the next steps writes a byte, and the last step writes
     /// the mark again.
     step: u8,
     /// The last step.

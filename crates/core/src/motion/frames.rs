@@ -13,7 +13,7 @@
 //!
 //! # States
 //! The effect of each command and of each frame, by state. A command *queues* its gait or pose: this becomes the next
-//! target, which follows the present motion. At a pace of 0 a motion stands still. "-" means no change.
+//! target, which follows the current motion. At a pace of 0 a motion stands still. "-" means no change.
 //!
 //! | state | command | frame |
 //! |---|---|---|
@@ -66,7 +66,7 @@ pub struct Motion {
     robot: Robot<'static>,
     calibration: [Calibration; 4],
     state: State,
-    /// The target that follows once the present motion stands still; always `None` while the robot rests.
+    /// The target that follows once the current motion stands still; always `None` while the robot rests.
     next_target: Option<Target>,
     /// The count of the cycles of the gait that is under way or comes next.
     cycle_count: CycleCount,
@@ -166,7 +166,7 @@ impl Motion {
         self.is_settling = true;
     }
 
-    /// True if the present pose, the end of the present move or the next target is beyond the travel that `servo` has
+    /// True if the current pose, the end of the current move or the next target is beyond the travel that `servo` has
     /// with `calibration`.
     pub fn exceeds_travel(&self, servo: Servo, calibration: &Calibration) -> bool {
         let is_beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
@@ -303,7 +303,7 @@ impl Motion {
         pulses
     }
 
-    /// The present activity, or the one that the robot is moving to.
+    /// The current activity, or the one that the robot is moving to.
     pub const fn activity(&self) -> Activity {
         match (self.next_target, self.state) {
             (Some(Target::Gait(id)), _) => Activity::Gait(id),
@@ -340,7 +340,7 @@ impl Motion {
         self.next_target = Some(target);
     }
 
-    /// Ends all motion in the present pose; the robot then holds it or rests, as `state` says.
+    /// Ends all motion in the current pose; the robot then holds it or rests, as `state` says.
     fn freeze(&mut self, state: State) {
         self.stance.is_resting = matches!(state, State::Resting);
         self.state = state;

@@ -56,7 +56,7 @@ impl PointToPointMove {
         self.elapsed_share == FULL_DURATION
     }
 
-    /// The pose at the present time of the move.
+    /// The pose at the current time of the move.
     pub fn pose(&self) -> Pose {
         if self.has_arrived() {
             return self.to;

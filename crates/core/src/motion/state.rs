@@ -49,7 +49,7 @@ pub enum State {
     Moving {
         /// The move that is under way.
         path: PointToPointMove,
-        /// The present pace of the move; 1024 is full pace.
+        /// The current pace of the move; 1024 is full pace.
         pace: u16,
         /// The gait that begins at the end of the move; if `None`, the pose is held.
         gait: Option<GaitId>,
@@ -62,7 +62,7 @@ pub enum State {
         gait: Gait,
         /// The phase, 1/2^24 cycle.
         phase: u32,
-        /// The present pace of the gait; 1024 is full pace.
+        /// The current pace of the gait; 1024 is full pace.
         pace: u16,
     },
 }

@@ -57,7 +57,7 @@ impl Bars {
     /// whose sum is at most [`MAX_LENGTH_STEPS`]; and the left and the right coupler.
     ///
     /// # Panics
-    /// If a coupler is shorter than [`MIN_COUPLER_STEPS`].
+    /// Panics if a coupler is shorter than [`MIN_COUPLER_STEPS`].
     pub const fn new([base, left, right]: [i16; 3], [a, b]: [i16; 2], scale: Scale) -> Self {
         assert!(a >= MIN_COUPLER_STEPS && b >= MIN_COUPLER_STEPS);
         let half_sum = (a as u32 + b as u32) / 2;

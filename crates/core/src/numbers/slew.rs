@@ -19,7 +19,7 @@ impl Slew {
     /// Creates a slew limit of `per_frame`, in 1/65536 turn per frame.
     ///
     /// # Panics
-    /// If the limit is below [`Slew::MIN_PER_FRAME`].
+    /// Panics if the limit is below [`Slew::MIN_PER_FRAME`].
     pub const fn new(per_frame: u16) -> Self {
         assert!(per_frame >= Self::MIN_PER_FRAME);
         Self {

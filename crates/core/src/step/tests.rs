@@ -38,7 +38,7 @@ fn count_written_lines(robot: &RunningRobot) -> usize {
 }
 
 #[test]
-fn a_tick_comes_before_output_and_output_before_input() {
+fn a_tick_has_priority_over_output_and_output_over_input() {
     let mut robot = start_robot(7, "speed 50\r");
     robot.board.tick();
     assert!(run_step(&mut robot));

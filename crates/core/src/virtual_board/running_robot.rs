@@ -68,7 +68,7 @@ impl RunningRobot {
     /// Steps the main loop until it has nothing more to do before time passes.
     ///
     /// # Panics
-    /// If the main loop never becomes idle.
+    /// Panics if the main loop never becomes idle.
     pub fn settle(&mut self) {
         if self.is_stopped_by_watchdog() {
             return;
@@ -118,7 +118,7 @@ impl RunningRobot {
     /// Reads all waiting lines and checks their form.
     ///
     /// # Panics
-    /// If a line has a wrong form.
+    /// Panics if a line has a wrong form.
     pub fn read_lines(&mut self) -> Vec<String> {
         self.settle();
         let text = core::mem::take(&mut self.board.transmitter.text);
@@ -149,7 +149,7 @@ impl RunningRobot {
     /// Sends a line and returns its answer. The lines after the answer remain to be read.
     ///
     /// # Panics
-    /// If the line gets no answer or several answers.
+    /// Panics if the line gets no answer or several answers.
     pub fn send_line(&mut self, line: &str) -> String {
         self.read_lines();
         let mut printed_lines = self.send(line.as_bytes());
@@ -172,7 +172,7 @@ impl RunningRobot {
     /// Sends a line, which must be accepted.
     ///
     /// # Panics
-    /// If the answer is not `ok` followed by the line.
+    /// Panics if the answer is not `ok` followed by the line.
     #[track_caller]
     pub fn expect_accepted(&mut self, line: &str) {
         assert_eq!(self.send_line(line), std::format!("ok {line}"));
@@ -181,7 +181,7 @@ impl RunningRobot {
     /// Sends a line, which must be refused with an answer that begins with `err` and `reason`.
     ///
     /// # Panics
-    /// If the line is accepted, or refused for another reason.
+    /// Panics if the line is accepted, or refused for another reason.
     #[track_caller]
     pub fn expect_refused(&mut self, line: &str, reason: &str) {
         let answer = self.send_line(line);
@@ -194,7 +194,7 @@ impl RunningRobot {
     /// Requests the status and returns the value of a key in it.
     ///
     /// # Panics
-    /// If the status has no such key.
+    /// Panics if the status has no such key.
     pub fn status_value(&mut self, key: &str) -> String {
         let line = self.send_line("status");
         let pairs = line.split(' ').filter_map(|word| word.split_once('='));

@@ -261,7 +261,7 @@ fn the_first_words_of_a_gaits_name_alone_are_an_incomplete_name() {
 }
 
 #[test]
-fn every_gait_takes_every_count_from_1_to_999_and_no_other() {
+fn every_gait_accepts_every_count_from_1_to_999_and_no_other() {
     let robot = Sample::odd();
     for name in GAIT_NAMES {
         let read = |count: &str| parse(format!("{name} {count}").as_bytes(), &robot);

@@ -166,7 +166,7 @@ fn each_hold_is_reported_once_and_shown_by_status_until_the_robot_moves_again() 
 }
 
 #[test]
-fn the_reason_of_a_hold_is_printed_even_if_stand_arrives_before_it_is_written() {
+fn the_reason_for_a_hold_is_printed_even_if_stand_arrives_before_it_is_written() {
     let mut dialogue = run_until_guard_holds();
     dialogue.board.send(b"stand\r");
     dialogue.run_without_reader(3);
@@ -196,7 +196,7 @@ fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report
             .starts_with("# gaits: ")
     };
     while !read_line_and_match_gaits(&mut dialogue) {}
-    // From here on, nobody reads. Meanwhile the guard stops the robot, a pulse edge comes late, and a report is due.
+    // From here on, nobody reads. Meanwhile the guard stops the robot, a pulse edge is late, and a report becomes due.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late_edges = 1;

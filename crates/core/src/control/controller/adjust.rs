@@ -1,4 +1,4 @@
-//! Changes of the servos' settings. A change takes effect at once. It is refused if some gait, the present pose or the
+//! Changes of the servos' settings. A change takes effect at once. It is refused if some gait, the current pose or the
 //! target would then be outside a servo's travel.
 
 use super::Controller;
@@ -60,7 +60,7 @@ impl Controller {
         }
     }
 
-    /// Checks that the present pose and the target stay within a servo's travel.
+    /// Checks that the current pose and the target stay within a servo's travel.
     #[inline(never)]
     fn check_poses(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self.motion.exceeds_travel(servo, calibration) {

@@ -51,7 +51,7 @@ impl Controller {
         self.reset_count
     }
 
-    /// The present fault: [`Fault::Guard`] while the guard holds the robot, otherwise the fault of [`Safety`].
+    /// The current fault: [`Fault::Guard`] while the guard holds the robot, otherwise the fault of [`Safety`].
     pub fn fault(&self) -> Option<Fault> {
         match self.motion.hazard() {
             Some(_) => Some(Fault::Guard),

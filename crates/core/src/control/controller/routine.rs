@@ -15,9 +15,9 @@ pub(super) struct Routine {
     pub id: GaitId,
     /// The index of the next step.
     next_step: u8,
-    /// Rounds that are not complete yet, including the present one; 0 for a routine without an end.
+    /// Rounds that are not complete yet, including the current one; 0 for a routine without an end.
     rounds_left: u16,
-    /// Frames until the present step ends; 0 if it ends when its gait has completed its cycles, [`Step::ENDLESS`] if
+    /// Frames until the current step ends; 0 if it ends when its gait has completed its cycles, [`Step::ENDLESS`] if
     /// only a contact ends it.
     frames_left: u16,
 }
@@ -59,7 +59,7 @@ impl Controller {
         }
     }
 
-    /// Continues the routine after a frame. `is_closed` is the level of the contact that may end the present step.
+    /// Continues the routine after a frame. `is_closed` is the level of the contact that may end the current step.
     #[inline(never)]
     pub(super) fn advance_routine(&mut self, is_closed: bool) {
         if self.motion.hazard().is_some() {

@@ -115,7 +115,7 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
 }
 
 #[test]
-fn a_gait_ends_once_no_command_has_come_for_the_time_of_deadman_and_no_sooner() {
+fn a_gait_ends_once_no_command_has_been_received_for_the_time_of_deadman_and_no_sooner() {
     let supplies = odd_supplies();
     for deadman_ms in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = safety_without_boot();
@@ -127,7 +127,7 @@ fn a_gait_ends_once_no_command_has_come_for_the_time_of_deadman_and_no_sooner() 
             {
                 frames += 1;
             }
-            // If the command came just before the first frame, these are the times since it, ms: in the last frame,
+            // If the command arrived just before the first frame, these are the times since it, ms: in the last frame,
             // which ended the gait, and in the previous one.
             let (last_ms, previous_ms) = (20 * frames, 20 * frames - 20);
             assert!(

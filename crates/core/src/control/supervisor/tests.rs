@@ -23,13 +23,13 @@ const fn event_text(event: Event) -> &'static str {
         Event::Stop => "`stop`",
         Event::Rest => "`rest`",
         Event::Save => "`save`",
-        Event::Boot => "the time of `boot` has come",
+        Event::BootDue => "the time of `boot` has come",
         Event::Silence => "no line for as long as `deadman` says",
-        Event::TooLowToMove => "the supply gets too low to move",
-        Event::TooLowToHold => "the supply gets too low to hold",
+        Event::SupplyTooLowToMove => "the supply gets too low to move",
+        Event::SupplyTooLowToHold => "the supply gets too low to hold",
         Event::LateEdge => "an edge of a pulse is late",
         Event::StackOverflow => "the stack reaches the data",
-        Event::Unsafe => "the next pose would not be safe",
+        Event::UnsafePose => "the next pose would not be safe",
     }
 }
 
@@ -138,7 +138,7 @@ fn only_stand_and_boot_give_pulses_to_a_resting_robot() {
         for (supply, _) in SUPPLY_LEVELS {
             // `save` is obeyed, too, but moves nothing.
             if response(event, supply, State::Resting) == Response::Obey {
-                assert!(matches!(event, Event::Stand | Event::Boot | Event::Save));
+                assert!(matches!(event, Event::Stand | Event::BootDue | Event::Save));
             }
         }
     }
@@ -146,7 +146,7 @@ fn only_stand_and_boot_give_pulses_to_a_resting_robot() {
 
 #[test]
 fn a_falling_supply_never_allows_a_command_that_a_higher_supply_refuses() {
-    for event in [Event::Stand, Event::Move, Event::Save, Event::Boot] {
+    for event in [Event::Stand, Event::Move, Event::Save, Event::BootDue] {
         for state in State::ALL {
             let is_obeyed = |(supply, _)| response(event, supply, state) == Response::Obey;
             let are_obeyed = [

@@ -117,7 +117,7 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
 }
 
 #[test]
-fn after_six_worse_readings_the_level_nearest_to_the_present_one_counts() {
+fn after_six_worse_readings_the_level_nearest_to_the_current_one_counts() {
     for (usual_volts, odd_volts, level) in [
         (4.45, 3.5, Level::Slow),
         (4.25, 3.5, Level::Stop),
@@ -139,7 +139,7 @@ fn after_six_worse_readings_the_level_nearest_to_the_present_one_counts() {
 }
 
 #[test]
-fn after_fifty_better_readings_the_level_nearest_to_the_present_one_counts() {
+fn after_fifty_better_readings_the_level_nearest_to_the_current_one_counts() {
     for odd_frame in 0..50 {
         let mut supply = Supply::default();
         measure_board_until_change(&mut supply, 4.2);

@@ -11,7 +11,7 @@ use crate::numbers::units::phase16;
 /// The count of a gait's cycles. A phase is in 1/65536 cycle, so it wraps at the end of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CycleCount {
-    /// Cycles left, including the present one; 0 if the gait has no count.
+    /// Cycles left, including the current one; 0 if the gait has no count.
     pub cycles_left: u16,
     /// The phase covered since the count started, modulo one cycle.
     pub phase_covered: u16,
@@ -20,7 +20,7 @@ pub(super) struct CycleCount {
 }
 
 impl CycleCount {
-    /// No count: the gait goes on until a command or a fault ends it.
+    /// No count: the gait continues until a command or a fault ends it.
     pub const NONE: Self = Self {
         cycles_left: 0,
         phase_covered: 0,

@@ -82,7 +82,7 @@ impl Motion {
         }
     }
 
-    /// The pulses of the present pose.
+    /// The pulses of the current pose.
     fn held_pulses(&self) -> Pulses {
         self.stance.pose.pulses(&self.calibration)
     }
@@ -213,7 +213,7 @@ fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
 }
 
 #[test]
-fn a_move_to_a_gait_goes_on_when_that_gait_is_ordered_again() {
+fn a_move_to_a_gait_continues_when_that_gait_is_ordered_again() {
     let build_motion = || {
         let mut motion = Motion::standing();
         motion.go_to_sweeps(SWEEPS);
@@ -231,7 +231,7 @@ fn a_move_to_a_gait_goes_on_when_that_gait_is_ordered_again() {
 // Cycling.
 
 #[test]
-fn the_same_gait_ordered_again_goes_on_in_the_middle_of_its_cycle() {
+fn the_same_gait_ordered_again_continues_in_the_middle_of_its_cycle() {
     for name in GAIT_NAMES.into_iter().filter(|name| *name != "stray") {
         let build_motion = || Motion::in_gait(name, 60);
         let mut repeated_motion = build_motion();

@@ -139,7 +139,7 @@ impl Content {
     /// Makes the bytes of the section, which may exceed the flash of a board, see [`super::SPACE_BYTES`].
     ///
     /// # Panics
-    /// If a map has more than 255 rows, or the section more than 65 535 bytes.
+    /// Panics if a map has more than 255 rows, or the section more than 65 535 bytes.
     pub fn section_bytes(&self) -> Vec<u8> {
         let [head, tail] = &self.ends;
         let mut bytes_after_numbers = Vec::new();

@@ -21,7 +21,7 @@ const CRC_OFFSET: usize = offset_of!(Header, crc);
 /// Writes the correct checksum into a section, whether its content is valid or not.
 ///
 /// # Panics
-/// If the section is shorter than a header.
+/// Panics if the section is shorter than a header.
 pub fn write_checksum(section: &mut [u8]) {
     let crc = Checksum::of(&section[CRC_RANGE_START..]).0;
     section[CRC_OFFSET..CRC_RANGE_START].copy_from_slice(&crc.to_le_bytes());
@@ -31,7 +31,7 @@ pub fn write_checksum(section: &mut [u8]) {
 /// every flipped bit of the length.
 ///
 /// # Panics
-/// If the section is longer than 65 535 bytes.
+/// Panics if the section is longer than 65 535 bytes.
 pub(super) fn add_seal(mut section: Vec<u8>) -> Vec<u8> {
     loop {
         let length = u16::try_from(section.len()).expect("a section has at most 65535 bytes");

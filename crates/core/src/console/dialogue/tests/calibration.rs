@@ -355,7 +355,7 @@ fn after_a_change_of_calibration_a_gait_accelerates_gradually_to_its_full_pace()
     let first_moving_frame = advances
         .iter()
         .position(|advance| *advance > 0)
-        .expect("the gait goes on");
+        .expect("the gait continues");
     assert!(
         first_moving_frame > 0 && advances[first_moving_frame] < full_advance / 4,
         "{advances:?}"

@@ -32,7 +32,7 @@ pub static GAIT_NAMES: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
 /// A finite automaton that reads a line byte by byte.
 #[derive(Default)]
 pub struct LineAutomaton {
-    /// For each state, the next state for each byte that may follow.
+    /// The next state for each byte that may follow, for each state.
     pub transitions: Vec<BTreeMap<u8, usize>>,
     /// The states in which a command may end.
     pub accepting_states: BTreeSet<usize>,

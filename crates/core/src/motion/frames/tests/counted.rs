@@ -110,7 +110,7 @@ fn a_counted_gait_brakes_like_one_that_another_gait_replaces() {
 }
 
 #[test]
-fn a_count_ordered_for_a_running_gait_begins_at_its_present_phase() {
+fn a_count_ordered_for_a_running_gait_begins_at_its_current_phase() {
     for (start_frames, count) in [(60, 1), (95, 2), (110, 3)] {
         let mut motion = Motion::in_gait("sway", start_frames);
         motion.start_for("sway", count);
