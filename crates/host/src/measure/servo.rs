@@ -92,7 +92,7 @@ struct Report {
     /// Hysteresis: the difference between the angles at which the horn stops when it comes from either side, deg, and
     /// its error.
     sides: [f64; 2],
-    /// The largest small step of the pulse that did not move the servo, us.
+    /// The largest step of the pulse width that did not move the servo, us.
     still_us: f64,
     is_spin_up_known: bool,
     is_dead_band_known: bool,
@@ -174,9 +174,9 @@ impl Report {
         };
         let us_per_degree = servo.us_per_degree;
         let mut figures = Vec::new();
-        let mut push_key = |key, decimals, figure: Figure, robot: f64, scale: f64| {
+        let mut push_key = |key, decimals, figure: Figure, robot_value: f64, scale: f64| {
             figures.push(
-                MeasuredKey::new("servo", key, decimals, figure, robot * scale)
+                MeasuredKey::new("servo", key, decimals, figure, robot_value * scale)
                     .with_scale(1.0 / scale),
             );
         };

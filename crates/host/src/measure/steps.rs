@@ -10,9 +10,9 @@ use lizard_robot::servo::SERVO_NAMES;
 
 use crate::{Failure, RobotFile};
 
-/// Time before the first step, s, in which the console waits for the board.
+/// Time before the first step, while the console waits for the board, s.
 const LEAD_TIME_S: f64 = 6.0;
-/// Slew limit that the jig needs, deg/s: the largest that robot.toml allows, faster than servos turn.
+/// Slew limit that the jig needs, deg/s: the largest that robot.toml allows, above the rate of any servo.
 const MIN_JIG_SLEW: f64 = 1000.0;
 /// Spacing of the poses that are checked along a step, deg.
 const CHECK_SPACING_DEG: f64 = 1.0;
@@ -63,7 +63,7 @@ pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks that the slew limit is at least [`MIN_JIG_SLEW`], so that it does not slow a servo down.
+/// Checks that the slew limit is at least [`MIN_JIG_SLEW`], so that the limit does not slow a servo down.
 pub(super) fn check_slew(robot: &Robot) -> Result<(), Failure> {
     let slew = robot.speed_limits().slew;
     if slew < MIN_JIG_SLEW {

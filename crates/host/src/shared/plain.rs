@@ -28,6 +28,7 @@ pub fn readable_lines(text: &str) -> String {
 
 /// Replaces the middle of a very long line with the number of omitted characters.
 fn shorten(line: &str) -> String {
+    /// Number of characters that remain on each side.
     const SIDE_LENGTH: usize = 300;
     let char_count = line.chars().count();
     if char_count <= 3 * SIDE_LENGTH {

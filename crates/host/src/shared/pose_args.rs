@@ -59,7 +59,7 @@ pub enum NumberError {
     NotANumber,
     /// The number is infinite, NaN, or too large for an f64.
     NotFinite,
-    /// The number is larger than its quantity may be.
+    /// The number is outside the bounds of its quantity.
     OutOfRange(Quantity),
 }
 

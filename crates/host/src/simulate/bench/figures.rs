@@ -154,7 +154,7 @@ impl Figures {
         let stack =
             StackDepth::of(&image).map_err(|error| Failure::Impossible(error.to_string()))?;
         report_progress("pulses on an idle line");
-        let mut idle_run = GaitRun::of(boot_board()?, gait, 20_000)?;
+        let mut idle_run = GaitRun::record(boot_board()?, gait, 20_000)?;
         let command_bytes = idle_run.board.uno.received_by_uno().len();
         let idle_exactness =
             Exactness::measure(&mut idle_run.board, robot.firmware(), command_bytes)?;
@@ -185,7 +185,7 @@ impl Figures {
         let max_serial_interrupt_cycles = longest_serial_interrupt(boot_board, turn_gait)?;
         report_progress("ten minutes of a gait");
         let start = Instant::now();
-        let long_run = GaitRun::of(boot_board()?, gait, LONG_RUN_MS)?;
+        let long_run = GaitRun::record(boot_board()?, gait, LONG_RUN_MS)?;
         let wall_s = start.elapsed().as_secs_f64();
 
         let frame_count = idle_run.cycles as f64 / FRAME_CYCLES as f64;
@@ -270,7 +270,8 @@ struct GaitRun {
 }
 
 impl GaitRun {
-    fn of(mut board: SimulatedBoard, command: &str, ms: u64) -> Result<Self, BoardError> {
+    /// Runs a command for a second, then counts the cycles of the next `ms`.
+    fn record(mut board: SimulatedBoard, command: &str, ms: u64) -> Result<Self, BoardError> {
         board.say(command)?;
         board.run_ms(1000)?;
         let count_cycles = |board: &SimulatedBoard| {

@@ -48,7 +48,7 @@ struct JudgedRow<'a> {
 }
 
 impl<'a> JudgedRow<'a> {
-    fn of(row: &'a Row) -> Self {
+    fn new(row: &'a Row) -> Self {
         let met = row.is_within_budget();
         Self { row, met }
     }
@@ -80,7 +80,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let rows = rows(&figures);
     let mut out = io::stdout().lock();
     if args.json {
-        let rows: Vec<_> = rows.iter().map(JudgedRow::of).collect();
+        let rows: Vec<_> = rows.iter().map(JudgedRow::new).collect();
         let elf = elf.display().to_string();
         writeln!(out, "{}", serde_json::json!({ "elf": elf, "rows": rows }))?;
     } else {

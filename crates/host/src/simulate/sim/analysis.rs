@@ -91,7 +91,7 @@ pub struct CommandPath {
 
 impl ServoFrame {
     /// The frame that starts `seconds` after power-on, with these pulse widths in cycles.
-    fn of(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
+    fn from_widths(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
         let to_us = |width: u64| width as f64 / CYCLES_PER_US as f64;
         let offsets = widths.map(|widths| -> [f64; 4] {
             std::array::from_fn(|i| robot.servos()[i].sweep(to_us(widths[i])))
@@ -111,7 +111,7 @@ pub fn servo_frames_of(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     let seconds_of = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
     frames
         .iter()
-        .map(|frame| ServoFrame::of(robot, seconds_of(frame), frame.all_widths()))
+        .map(|frame| ServoFrame::from_widths(robot, seconds_of(frame), frame.all_widths()))
         .collect()
 }
 
@@ -134,7 +134,7 @@ impl<'a> Run<'a> {
             let widths = self.log.widths[index];
             let has_all_widths = widths.iter().all(|width| *width > 0);
             let widths = has_all_widths.then_some(widths.map(u64::from));
-            ServoFrame::of(self.robot, self.log.seconds_at(index), widths)
+            ServoFrame::from_widths(self.robot, self.log.seconds_at(index), widths)
         })
     }
 

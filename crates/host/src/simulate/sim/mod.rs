@@ -102,6 +102,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
+/// The fidelity of the simulated chip, as named on the command line.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum FidelityArg {
     /// Corrected by the ATmega328P's data sheet
@@ -187,7 +188,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         most_pins_high: log.most_pins_high,
         asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
-        ram: Ram::of(&uno),
+        ram: Ram::measure(&uno),
         overruns: uno.overruns(),
         resets: uno.watchdog_resets(),
         ended: end_message(&recording.state),

@@ -183,8 +183,8 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// The RAM of a UNO's program; `None` if the image does not say where its data ends.
-    pub fn of(uno: &Uno) -> Option<Self> {
+    /// Measures the RAM of a UNO's program; `None` if the image does not say where its data ends.
+    pub fn measure(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();
         (static_ram > 0).then(|| Self {
             static_ram,

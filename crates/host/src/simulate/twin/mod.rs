@@ -61,6 +61,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
+/// The model of the servos, as named on the command line.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum ServoArg {
     /// With the torque, the rate, the rotor and the dead band of `[servo]` in robot.toml

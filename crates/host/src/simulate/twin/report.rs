@@ -95,7 +95,7 @@ fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Rou
 
 impl Displacement {
     /// The components of a travel that the prediction determines; all components without a prediction.
-    fn of(travel: Travel, prediction: Option<&Prediction>) -> Self {
+    fn from_travel(travel: Travel, prediction: Option<&Prediction>) -> Self {
         let keep_determined =
             |component: fn(&Prediction) -> Option<f64>, value: f64| match prediction {
                 Some(prediction) => component(prediction).map(|_| value),
@@ -134,13 +134,13 @@ impl Report {
             Row {
                 command: stage.command.clone(),
                 seconds: [seconds_at(stage.frames.start), seconds_at(stage.frames.end)],
-                way: Displacement::of(stage_tally.travel(), prediction),
+                way: Displacement::from_travel(stage_tally.travel(), prediction),
                 cycle: cycle_tally.zip(cycle).map(|(tally, (gait, _))| Cycle {
-                    way: Displacement::of(tally.travel(), prediction),
-                    predicted: prediction
-                        .map_or(Displacement::of(tally.travel(), None), |prediction| {
-                            (*prediction).into()
-                        }),
+                    way: Displacement::from_travel(tally.travel(), prediction),
+                    predicted: prediction.map_or(
+                        Displacement::from_travel(tally.travel(), None),
+                        |prediction| (*prediction).into(),
+                    ),
                     speed: prediction
                         .and_then(|prediction| prediction.forward)
                         .map(|_| {

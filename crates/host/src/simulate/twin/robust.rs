@@ -102,7 +102,7 @@ pub fn run(
                 .simulate_cycle(robot, gait, model)
         };
         let paths: Vec<Travel> = (0..u64::from(variation_count)).map(simulate).collect();
-        spreads.push(Spread::of(
+        spreads.push(Spread::from_paths(
             gait.name(),
             &paths,
             EffortShare::of_gait(robot, gait),
@@ -121,7 +121,7 @@ pub fn run(
 
 impl Spread {
     /// The spread of a gait over the paths of its variations.
-    fn of(gait: &str, paths: &[Travel], lines: Vec<EffortShare>) -> Self {
+    fn from_paths(gait: &str, paths: &[Travel], lines: Vec<EffortShare>) -> Self {
         let quantiles_of = |quantity: fn(&Travel) -> f64| {
             quantiles(paths.iter().map(quantity).collect(), [0.05, 0.5, 0.95])
         };

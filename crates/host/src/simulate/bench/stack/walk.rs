@@ -53,7 +53,7 @@ struct SharedRoutines {
 impl SharedRoutines {
     /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are 20 - K bytes, and
     /// reserves a frame of the size given in r26.
-    fn of(image: &Image) -> Self {
+    fn find(image: &Image) -> Self {
         let routines_with = |prefix: &str| {
             let address_and_size = |symbol: &simulated_uno::Symbol| {
                 let first_register: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
@@ -100,7 +100,7 @@ impl<'a> Walk<'a> {
             image,
             flash,
             context,
-            shared: SharedRoutines::of(image),
+            shared: SharedRoutines::find(image),
             summaries: HashMap::new(),
         }
     }
