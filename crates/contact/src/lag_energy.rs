@@ -77,20 +77,21 @@ fn smoothed_ramp(x: f64, eps: f64) -> Expansion {
 impl StrutTriangle {
     /// Makes the triangle of a base and an arm (mm) with an angle between them, rad.
     pub fn new(base: f64, arm: f64, angle: f64) -> Self {
-        let sin_cos = angle.abs().sin_cos();
+        let (sin, cos) = angle.abs().sin_cos();
         Self {
             base,
             arm,
             angle,
-            sin_cos,
-            unlagged_length: (base * base + arm * arm - 2.0 * base * arm * sin_cos.1).sqrt(),
+            sin_cos: (sin, cos),
+            unlagged_length: (base * base + arm * arm - 2.0 * base * arm * cos).sqrt(),
         }
     }
 
     /// Lever arm of the strut's pull while the leg does not lag: the derivative of the strut's length with respect to
     /// the lag, mm/rad. It is negative if a positive lag makes the strut shorter.
     pub fn lever_arm(&self) -> f64 {
-        (self.base * self.arm * self.sin_cos.0 / self.unlagged_length).copysign(self.angle)
+        let (sin, _) = self.sin_cos;
+        (self.base * self.arm * sin / self.unlagged_length).copysign(self.angle)
     }
 
     /// Magnitude of the lever arm, mm/rad, after a lag (rad) in the direction in which the strut grows.

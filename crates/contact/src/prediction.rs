@@ -21,6 +21,7 @@ const MIN_TURN_TOLERANCE: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
 /// A walk on slightly uneven pads, compared with the walk on even ones.
 struct UnevenWalk {
+    /// The robot on the uneven pads.
     walker: Walker,
     /// Sums, over all steps, of the absolute differences of the twists: forward and left in mm, turn in rad.
     total_differences: Twist,

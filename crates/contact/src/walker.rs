@@ -26,6 +26,7 @@ const KINK_WIDTH: f64 = 1e-12;
 /// A robot that walks on a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {
+    /// The robot and its floor.
     ground: Ground,
     /// Factors on the pads' loads, and the factor on the ratio of backward to forward friction.
     unevenness: ([f64; 4], f64),
@@ -39,6 +40,7 @@ pub struct Walker {
     body_velocity: Twist,
     /// Velocities of the pads over the floor while motors drive them, mm/s.
     pad_velocities: [Point; 4],
+    /// The place of the body on the floor.
     place: Place,
 }
 

@@ -49,6 +49,7 @@ pub struct Bolt<'a> {
     pub position: Vector,
     /// Height of the face under the screw's head, mm.
     pub head_z: f64,
+    /// The direction from the screw's head to its tip.
     pub direction: Direction,
     /// Height of the face that the nut bears on, mm.
     pub nut_z: f64,

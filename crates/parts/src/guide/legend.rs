@@ -64,6 +64,7 @@ struct CountedLabel {
     distance: f64,
     /// The number of bodies of this name.
     count: usize,
+    /// The label, without the count.
     label: Label,
 }
 

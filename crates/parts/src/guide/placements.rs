@@ -27,10 +27,13 @@ struct PlacedBody<'a> {
     step: usize,
     /// The stage of that step in which the body is added, from 1.
     stage: usize,
+    /// The placement of the printed part's file; `None` for a bought body.
     #[serde(skip_serializing_if = "Option::is_none")]
     printed: Option<PrintPlacement>,
+    /// The screw in its place; `None` for another body.
     #[serde(skip_serializing_if = "Option::is_none")]
     screw: Option<Screw>,
+    /// The shapes of a bought body; empty for a printed one.
     solids: Vec<Prism>,
 }
 

@@ -48,9 +48,10 @@ pub struct SearchResult {
     pub region_count: u64,
 }
 
-/// A pose and the distance of the two nearest shapes at it.
+/// A pose, and the distance of the two shapes that are nearest there.
 #[derive(Clone, Debug)]
 pub struct Nearest {
+    /// An accepted pose.
     pub pose: Solution,
     /// The distance, mm.
     pub mm: f64,
@@ -115,6 +116,7 @@ struct Search<'a, const N: usize> {
     nearest: Option<Nearest>,
     /// The index of the pair of shapes with the distance in `nearest`.
     nearest_pair_index: u32,
+    /// Number of regions checked so far.
     region_count: u64,
 }
 
@@ -177,7 +179,7 @@ impl<const N: usize> Search<'_, N> {
         self.into_result(upper_bound, None)
     }
 
-    /// Makes the result. `unproved_region` is the region in which no larger distance could be proved.
+    /// Converts the search to its result. `unproved_region` is the region in which no larger distance could be proved.
     fn into_result(
         self,
         lower_bound: f64,
