@@ -1,7 +1,7 @@
 //! Tests of each servo's numbers in the core (neutral angle, gain, travel and pin), and of the speed limit of a move.
 
 use lizard_core::numbers::units::Sweep;
-use lizard_host_tests::{NamedRobot, robots};
+use lizard_host_tests::{CYCLES_PER_US, NamedRobot, robots};
 use lizard_robot::STEPS_PER_DEGREE;
 
 use crate::truth::to_degrees;
@@ -25,7 +25,7 @@ fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
             );
             let mut pulse_count = 0;
             for sweep in (i16::MIN..=i16::MAX).step_by(17) {
-                let exact_cycles = 16.0
+                let exact_cycles = CYCLES_PER_US
                     * (servo.neutral_us
                         + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE);
                 if !(0.0..65536.0).contains(&exact_cycles) {
@@ -92,7 +92,7 @@ fn each_servos_travel_ends_at_the_last_step_within_its_range_of_pulses() {
 }
 
 #[test]
-fn a_move_is_as_fast_as_the_file_allows_and_no_faster() {
+fn a_move_is_as_fast_as_the_robot_file_allows_and_no_faster() {
     for NamedRobot { name, robot } in robots() {
         let max_speed = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS_PER_DEGREE;
         let limit = robot.speed_limits().slew;

@@ -9,7 +9,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::{Pose, Pulses};
 use lizard_core::numbers::units::CYCLE;
 use lizard_core::virtual_board::RunningRobot;
-use lizard_host_tests::NamedRobot;
+use lizard_host_tests::{CYCLES_PER_US, NamedRobot};
 use lizard_robot::Robot;
 
 use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
@@ -23,11 +23,11 @@ pub const STEP_SPEED_DEG_PER_S: f64 = 50.0 * 360.0 / 65536.0;
 /// Number of frames in which a motion accelerates to its pace, or brakes.
 const ACCELERATION_FRAMES: f64 = 7.0;
 
-/// Maximum rounding error of a change of speed, angle steps per frame.
+/// Maximum rounding error of a speed change, angle steps per frame.
 const SPEED_CHANGE_ERROR_STEPS: f64 = 4.0;
 
-/// Returns the largest allowed change of a servo's speed from one frame to the next, deg/s. It does not apply to
-/// `stop`, `rest` and the guard, which stop a servo at once.
+/// Returns the largest allowed change of a servo's speed from one frame to the next, deg/s. This limit does not apply
+/// to `stop`, `rest` and the guard, which stop a servo at once.
 ///
 /// Of all moves to a pose, the shortest move has the largest change of speed, at its start and its end. The shortest
 /// move has eight frames and a mean speed of 2/3 of the slew limit, so its speed changes by `6 distance / 8^2` per
@@ -79,7 +79,7 @@ fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     )
 }
 
-/// Returns an upper bound for the number of frames that a command takes: for waking the servos, braking, the longest
+/// Returns an upper bound of the number of frames that a command takes: for waking the servos, braking, the longest
 /// move at the slew limit, and acceleration.
 pub fn settling_frames(robot: &Robot) -> u32 {
     let calibration = robot.firmware().calibration();
@@ -91,14 +91,14 @@ pub fn settling_frames(robot: &Robot) -> u32 {
     WAKING_FRAMES + 30 + (1.05 * longest_move_frames) as u32
 }
 
-/// A robot whose frames are checked when they are sent.
+/// A robot each of whose frames is checked when it is sent.
 pub struct CheckedRobot<'a> {
     name: &'a str,
     robot: &'a Robot,
     running: RunningRobot,
     /// The speed of each servo in the last frame, deg/s.
     speeds: [f64; 4],
-    /// True if the servos may stop at once in the next frame.
+    /// True if the servos may stop at once in the next frame, without braking.
     may_stop_at_once: bool,
     /// The largest allowed change of a servo's speed from one frame to the next, deg/s.
     max_speed_change: f64,
@@ -151,7 +151,7 @@ impl<'a> CheckedRobot<'a> {
         answer
     }
 
-    /// Sends a line that the robot must accept.
+    /// Sends a line and asserts that the robot accepts it.
     pub fn expect_ok(&mut self, line: &str) {
         let answer = self.say(line);
         assert!(answer.starts_with("ok"), "{}: {line}: {answer}", self.name);
@@ -189,7 +189,7 @@ impl<'a> CheckedRobot<'a> {
         if is_stopped_by_guard {
             assert_eq!(
                 pose, previous_pose,
-                "{name}: the guard holds the last safe pose"
+                "{name}: the guard does not hold the last safe pose"
             );
         }
         let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
@@ -227,12 +227,12 @@ impl<'a> CheckedRobot<'a> {
         let speeds: [f64; 4] = std::array::from_fn(|n| {
             (f64::from(pose.0[n].0) - f64::from(previous_pose.0[n].0)) * STEP_SPEED_DEG_PER_S
         });
-        for (speed, last_speed) in speeds.iter().zip(&self.speeds) {
-            let speed_change = (speed - last_speed).abs();
+        for (speed, previous_speed) in speeds.iter().zip(&self.speeds) {
+            let speed_change = (speed - previous_speed).abs();
             if !(self.may_stop_at_once || is_stopped_by_guard) {
                 assert!(
                     speed_change <= self.max_speed_change,
-                    "{name}: {last_speed} and then {speed} deg/s"
+                    "{name}: {previous_speed} and then {speed} deg/s"
                 );
                 self.largest_speed_change = self.largest_speed_change.max(speed_change);
             }
@@ -249,7 +249,8 @@ impl<'a> CheckedRobot<'a> {
                 continue;
             }
             let sweep_deg = f64::from(pose.0[index].0) * 360.0 / 65536.0;
-            let expected_cycles = 16.0 * (servo.neutral_us + servo.us_per_degree * sweep_deg);
+            let expected_cycles =
+                CYCLES_PER_US * (servo.neutral_us + servo.us_per_degree * sweep_deg);
             let error_cycles = f64::from(width.0) - expected_cycles;
             // The rounding errors are half a cycle for the neutral pulse, half a cycle for the product, and one cycle
             // for the gain at a sweep of half a turn.
@@ -259,7 +260,7 @@ impl<'a> CheckedRobot<'a> {
                 self.name,
                 index + 1
             );
-            let width_us = f64::from(width.0) / 16.0;
+            let width_us = f64::from(width.0) / CYCLES_PER_US;
             let allowed_us = servo.min_us - 0.13..=servo.max_us + 0.13;
             assert!(
                 allowed_us.contains(&width_us),

@@ -71,7 +71,7 @@ fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() 
             let pose_with_low_bits = gait.pose(robot.firmware().waves(), phase | 0xff);
             assert_eq!(
                 pose, pose_with_low_bits,
-                "the phase's low bits make no difference"
+                "the low bits of the phase change the pose"
             );
             let angles = float_gait.angles(f64::from(phase) / f64::from(CYCLE));
             for (servo, angle) in angles.into_iter().enumerate() {
@@ -178,7 +178,7 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
 }
 
 #[test]
-fn a_path_moves_only_its_own_end_around_its_centre() {
+fn a_path_moves_only_its_own_end_and_around_its_centre() {
     // In the gaits `look` and `wag` of random robots, a path's centre is the end point's position in the neutral pose.
     let mut path_count = 0;
     for NamedRobot { name, robot } in robots()
@@ -295,7 +295,7 @@ fn a_mirrored_gait_is_its_original_with_left_and_right_exchanged() {
 fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         let pose_at = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
-        // The largest turn of a servo from a phase to the next. The phase after the last one is 0.
+        // The largest turn of a servo from one phase to the next. The phase after the last is 0.
         let turn_from = |phase: u32| pose_at(phase).largest_turn_to(&pose_at(phase + (1 << 8)));
         let largest_turn = phases().step_by(7).map(turn_from).max();
         let largest_turn_at_wrap = phases().skip(PHASE_COUNT as usize - 4).map(turn_from).max();
@@ -310,7 +310,7 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
 #[test]
 fn the_papers_symmetric_gaits_are_mirrored_half_a_cycle_later() {
     for name in ["walk", "trot"] {
-        let gait = core_gait(paper_robot(), name).expect("a gait of the paper's robot");
+        let gait = core_gait(paper_robot(), name).expect("the paper's robot has this gait");
         for phase in phases() {
             let opposite_pose = gait.pose(
                 paper_robot().firmware().waves(),
@@ -327,7 +327,7 @@ fn the_papers_symmetric_gaits_are_mirrored_half_a_cycle_later() {
 
 #[test]
 fn the_head_of_the_papers_look_follows_its_figure_of_eight() {
-    let gait = core_gait(paper_robot(), "look").expect("a gait of the paper's robot");
+    let gait = core_gait(paper_robot(), "look").expect("the paper's robot has this gait");
     let neutral_angles = paper_robot().servos().map(|servo| servo.neutral);
     for phase in (0..PHASE_COUNT).step_by(16) {
         let sweeps = gait.pose(paper_robot().firmware().waves(), phase << 8).0;

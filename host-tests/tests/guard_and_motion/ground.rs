@@ -1,8 +1,8 @@
 //! Tests of the robot's travel due to the core's pulses. The pulses are converted back to angles for the contact model,
-//! and must move the robot as the gait in floating point does.
+//! in which they must move the robot as the gait in floating point does.
 
 use lizard_core::numbers::pose::Pulses;
-use lizard_host_tests::{NamedRobot, paper_robot, robots};
+use lizard_host_tests::{CYCLES_PER_US, NamedRobot, paper_robot, robots};
 use lizard_robot::{CheckedGait, Robot, Travel};
 
 use crate::frames::{CheckedRobot, settling_frames};
@@ -11,7 +11,7 @@ use crate::frames::{CheckedRobot, settling_frames};
 fn angles_of_pulses(robot: &Robot, pulses: Pulses) -> [f64; 4] {
     std::array::from_fn(|n| {
         let servo = &robot.servos()[n];
-        servo.neutral + servo.sweep(f64::from(pulses.0[n].0) / 16.0)
+        servo.neutral + servo.sweep(f64::from(pulses.0[n].0) / CYCLES_PER_US)
     })
 }
 
@@ -107,7 +107,7 @@ fn the_pulses_of_every_gait_move_the_robot_as_far_as_the_gait_in_floating_point(
     assert!(travel_count > 100);
 }
 
-// The tests of crates/robot/ compare the predictions in floating point with independent figures.
+// The tests of crates/robot/ compare the predictions in floating point with independent values.
 #[test]
 fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
     let named = NamedRobot {
@@ -119,7 +119,8 @@ fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
         let expected = gait.predict(&paper_robot().ground().with_rigid_drive());
         predicted_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
         for speed_percent in [100.0, 80.0, 50.0, 20.0] {
-            let travel = simulate_travel(&named, gait, speed_percent).expect("the path is clear");
+            let travel = simulate_travel(&named, gait, speed_percent)
+                .expect("the guard does not stop the robot");
             assert_travel(gait.name(), travel, 0.3, expected.forward, expected.turn);
         }
     }

@@ -19,7 +19,7 @@ fn margin_limits(robot: &Robot) -> [f64; 10] {
     })
 }
 
-/// Rounds a sine up to Q15.
+/// Rounds a sine up to the next multiple of 2^-15, the core's step.
 fn round_up_to_q15(limit: f64) -> i16 {
     (limit * 32768.0 - 1e-6).ceil() as i16
 }
@@ -86,7 +86,7 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_the_next_length_beyond_is_a_haza
 }
 
 #[test]
-fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
+fn the_guards_limits_are_those_of_the_robot_file_rounded_to_the_safe_side() {
     for NamedRobot { name, robot } in robots() {
         let core_limits = robot.firmware().limits();
         let file_limits = robot.limits();
@@ -113,7 +113,7 @@ fn the_guards_limits_are_those_of_the_file_rounded_to_the_safe_side() {
             let nominal_mm = robot.lizard().side(kinematics_side).nominal_length;
             let length_mm = |steps: u16| f64::from(steps) / steps_per_mm(slider.scale);
             let [min_mm, max_mm] =
-                [file_limits.stroke_min, file_limits.stroke_max].map(|travel| nominal_mm + travel);
+                [file_limits.stroke_min, file_limits.stroke_max].map(|stroke| nominal_mm + stroke);
             assert!(
                 length_mm(slider.stroke_min) >= min_mm - 1e-9,
                 "{name}: {side:?}"

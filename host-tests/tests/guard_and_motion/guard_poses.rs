@@ -13,7 +13,7 @@ use lizard_robot::Robot;
 
 use crate::truth::{
     ErrorStatistics, ExactConditions, FIVE_BAR_OF_MARGIN, MARGINS, MIN_TYPE2_LIMIT,
-    chassis_angles_deg, index_of_open_five_bar, is_safe, random_pose, random_pose_within,
+    chassis_angles_deg, index_of_unclosed_five_bar, is_safe, random_pose, random_pose_within,
     steps_per_mm, to_sine,
 };
 
@@ -37,7 +37,7 @@ struct Findings {
     refused_count: usize,
     /// The number of poses where the guard and floating point decide differently.
     disagreement_count: usize,
-    /// The largest distance of such a pose from its nearest limit, in bands.
+    /// The largest distance of a pose with a disagreement from its nearest limit, in bands.
     max_disagreement_bands: f64,
     /// The number of refusals for each of the twelve conditions.
     hazard_counts: [usize; 12],
@@ -59,11 +59,12 @@ impl Findings {
         let truth = match ExactConditions::of(robot, chassis_angles_deg(firmware, pose)) {
             Ok(truth) => truth,
             Err(fault) => {
-                // Index 0 is the head's type-2 margin, 1 the tail's. For an open tail, the guard may name the head.
-                let open_five_bar_index = index_of_open_five_bar(&fault)
-                    .expect("the sliders of these robots always have a length");
+                // Index 0 is the head's type-2 margin, 1 the tail's. If the tail does not close, the guard may name the
+                // head.
+                let unclosed_five_bar_index = index_of_unclosed_five_bar(&fault)
+                    .expect("the sides of these robots always close");
                 assert!(
-                    hazard_index.is_some_and(|index| index <= open_five_bar_index),
+                    hazard_index.is_some_and(|index| index <= unclosed_five_bar_index),
                     "{pose:?}: {fault}, {hazard:?}"
                 );
                 return;
@@ -71,9 +72,9 @@ impl Findings {
         };
         self.compare_values(robot, &clearance, &truth);
         let distances = truth.distances_from_limits();
-        for (distance, is_broken) in distances.into_iter().zip(truth.broken) {
+        for (distance, is_violated) in distances.into_iter().zip(truth.are_violated) {
             assert!(
-                distance.abs() <= 1.0 || is_broken == (distance < 0.0),
+                distance.abs() <= 1.0 || is_violated == (distance < 0.0),
                 "{truth:?}"
             );
         }
@@ -84,33 +85,33 @@ impl Findings {
         }
         assert!(
             smallest_distance.abs() <= 1.0 || hazard.is_none() == (smallest_distance > 0.0),
-            "{pose:?} is {smallest_distance} bands clear, and the guard says {hazard:?}"
+            "{pose:?} is {smallest_distance} bands from the nearest limit, but the guard reports {hazard:?}"
         );
         let Some(hazard_index) = hazard_index else {
             return;
         };
-        // The named condition is broken, and all conditions that the guard checks earlier are kept.
+        // The named condition is violated, and all conditions that the guard checks earlier are satisfied.
         assert!(
             distances[hazard_index] <= 1.0,
             "{pose:?}: {hazard:?}, {truth:?}"
         );
-        let are_earlier_conditions_kept = distances[..hazard_index]
+        let are_earlier_conditions_satisfied = distances[..hazard_index]
             .iter()
             .all(|distance| *distance >= -1.0);
         assert!(
-            are_earlier_conditions_kept,
-            "{pose:?}: {hazard:?} comes too early, {truth:?}"
+            are_earlier_conditions_satisfied,
+            "{pose:?}: {hazard:?} is not the first violated condition, {truth:?}"
         );
     }
 
-    /// Compares the guard's margins and strokes with those in floating point.
+    /// Compares the guard's margins and strokes with those in floating point, and records the errors.
     fn compare_values(&mut self, robot: &Robot, clearance: &Clearance, truth: &ExactConditions) {
         for (index, (value, expected)) in clearance.margins.iter().zip(truth.margins).enumerate() {
             let five_bar = FIVE_BAR_OF_MARGIN.get(index).copied();
             if let Some(five_bar) = five_bar
                 && (truth.margins[five_bar] < MIN_TYPE2_LIMIT || truth.is_at_crossing(five_bar))
             {
-                // This near to a type-2 singularity, the guard only has to detect that the margin is small.
+                // So near to a type-2 singularity, the guard only has to detect that the margin is small.
                 let max_margin = MIN_TYPE2_LIMIT + truth.bands[five_bar];
                 assert!(
                     truth.is_at_crossing(five_bar)
@@ -145,7 +146,7 @@ impl Findings {
     fn print_and_check(&self, name: &str) {
         println!(
             "{name}: type-2 {}, type-1 {}, leg {}, stroke {} steps; {} safe, {} refused, \
-             {} decided differently within {:.3} bands, margins within {:.3}; named {:?}",
+             {} disagreements within {:.3} bands, margins within {:.3}; named {:?}",
             self.type2,
             self.type1,
             self.leg,
@@ -170,7 +171,7 @@ impl Findings {
         );
         assert!(
             self.safe_count > 0 && self.refused_count > 0,
-            "{name} has no limit"
+            "{name}: all poses are safe, or none"
         );
     }
 }
@@ -180,7 +181,7 @@ fn condition_index(hazard: Hazard) -> usize {
     match hazard {
         Hazard::Margin { margin, .. } => {
             let index = MARGINS.iter().position(|known| *known == margin);
-            index.expect("one of ten")
+            index.expect("the margin is one of the ten")
         }
         Hazard::Stroke { side, .. } => 10 + side as usize,
         Hazard::Travel(_) => unreachable!("a clearance has no travel"),
@@ -256,7 +257,7 @@ fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
 }
 
 #[test]
-fn a_hazard_contains_the_value_that_broke_the_limit() {
+fn a_hazard_contains_the_value_that_violates_the_limit() {
     let mut hazard_counts = [0; 2];
     for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         for pose in random_poses(&mut rng(300 + robot_index as u64), robot).take(2000) {
@@ -267,7 +268,7 @@ fn a_hazard_contains_the_value_that_broke_the_limit() {
                     let index = MARGINS.iter().position(|known| *known == margin);
                     assert_eq!(
                         value,
-                        clearance.margins[index.expect("one of ten")],
+                        clearance.margins[index.expect("the margin is one of the ten")],
                         "{name}"
                     );
                     hazard_counts[0] += 1;
@@ -300,7 +301,8 @@ fn the_smallest_margin_agrees_with_kinematics() {
             }
             safe_count += 1;
             let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
-            let truth = ExactConditions::of(robot, chassis_angles).expect("a safe pose");
+            let truth =
+                ExactConditions::of(robot, chassis_angles).expect("a safe pose closes all loops");
             let smallest_margin = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
             let error =
                 to_sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest_margin;

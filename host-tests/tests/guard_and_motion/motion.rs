@@ -1,5 +1,5 @@
-//! Tests of the transitions between all motions, for every robot. Every frame must keep the limits, and every command
-//! must complete.
+//! Tests of the transitions between all motions, for every robot. Every frame must stay within the limits, and every
+//! command must complete.
 
 use lizard_core::motion::Activity;
 use lizard_core::numbers::gaits::GaitId;
@@ -88,7 +88,7 @@ fn every_command_completes_unless_the_guard_reports_a_hazard() {
         }
         assert!(
             completed_count > DIALOGUE_COUNT,
-            "{name}: only {completed_count} commands completed"
+            "{name}: only {completed_count} commands have completed"
         );
     }
 }
@@ -198,7 +198,7 @@ fn servos_wake_one_after_another_in_the_pose_before_the_rest() {
                     assert_eq!(
                         width.0 > 0,
                         first_pulse_frames[servo] > 0,
-                        "a servo that is awake stays awake"
+                        "a servo has fallen asleep again"
                     );
                 }
             }
@@ -233,7 +233,7 @@ fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_start_again() 
             let firmware = robot.firmware();
             let id = GaitId::all(firmware.gait_count())
                 .nth(gait_index)
-                .expect("a gait");
+                .expect("the index is that of a gait");
             let first_pose = firmware.gait(id).pose(firmware.waves(), 0);
             let has_begun = (0..2 * settling_frames(robot)).any(|_| {
                 walker.run_frames(1);

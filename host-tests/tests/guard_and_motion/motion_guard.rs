@@ -21,7 +21,7 @@ const MAX_PATH_COUNT: usize = 12;
 fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let calibration = robot.firmware().calibration();
     let pose_near_limit = |rng: &mut Rng| {
-        // Two cranks of one five-bar or of one side are near a limit; the other two are at neutral.
+        // Two cranks of a five-bar or of a side are near a limit; the other two are at neutral.
         let [first_servo, second_servo] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
         let random_pose = random_pose_within(rng, &calibration, 1.0);
         let mut pose = Pose::NEUTRAL;
@@ -89,7 +89,7 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
                 continue;
             }
             let start_pose = walker.pose();
-            // Also checks that every frame is safe.
+            // `run_frames` checks that every frame is safe.
             walker.run_frames(settling_frames(robot));
             // A fast move may cross a narrow unsafe region between two frames.
             let Some(hazard) = walker.motion().hazard() else {
@@ -106,7 +106,7 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             );
             // The reported hazard lies ahead on the path.
             assert!(
-                breaks_condition_ahead(
+                violates_condition_ahead(
                     robot.firmware(),
                     start_pose,
                     end_pose,
@@ -120,7 +120,7 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             assert_eq!(walker.pose(), held_pose, "{name}");
             assert!(
                 walker.take_output_lines().is_empty(),
-                "{name}: the hazard is reported only once"
+                "{name}: the hazard is reported again"
             );
             assert!(walker.say("status").contains(" guard=held "), "{name}");
             // The robot can move back, unless the guard stops it again.
@@ -137,8 +137,8 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
     assert!(held_count >= 10);
 }
 
-/// True if the rest of the path from the held pose breaks the condition that a hazard names.
-fn breaks_condition_ahead(
+/// True if the rest of the path from the held pose violates the condition that a hazard names.
+fn violates_condition_ahead(
     firmware: &CoreRobot,
     start_pose: Pose,
     end_pose: Pose,

@@ -40,7 +40,7 @@ impl PrintedConditions {
     }
 
     /// True if a guard on these conditions would refuse the pose.
-    fn are_broken(&self) -> bool {
+    fn are_violated(&self) -> bool {
         let limit = paper_robot().limits().type2;
         self.head < limit || self.tail < limit || self.left < limit
     }
@@ -60,7 +60,7 @@ fn pose_with_head_at(theta1_deg: f64, theta4_deg: f64) -> Pose {
 fn the_conditions_printed_in_the_paper_would_refuse_the_neutral_pose() {
     let conditions = PrintedConditions::of(&Pose::NEUTRAL);
     assert!(conditions.head < 1e-3 && conditions.tail < 1e-3 && conditions.left < 1e-3);
-    assert!(conditions.are_broken());
+    assert!(conditions.are_violated());
     assert!(is_safe(paper_robot().firmware(), &Pose::NEUTRAL));
 }
 
@@ -84,7 +84,7 @@ fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
     for id in GaitId::all(firmware.gait_count()) {
         let gait = firmware.gait(id);
         let stopped_count = (0..256u32)
-            .filter(|n| PrintedConditions::of(&gait.pose(firmware.waves(), n << 16)).are_broken())
+            .filter(|n| PrintedConditions::of(&gait.pose(firmware.waves(), n << 16)).are_violated())
             .count();
         assert!(stopped_count > 64, "{id:?}: {stopped_count} of 256");
     }

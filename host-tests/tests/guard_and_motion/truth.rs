@@ -16,7 +16,8 @@ use lizard_robot::{CoreRobot, Robot};
 
 /// The maximum error of a margin due to the guard's arithmetic, as a sine. The rounding of lengths adds to this error.
 pub const MARGIN_BAND: f64 = 0.002;
-/// The smallest type-2 limit that robot.toml may set. Below it, the guard only has to detect that a margin is small.
+/// The smallest type-2 limit that robot.toml may set, a sine. Below this value, the guard only has to detect that a
+/// margin is small.
 pub const MIN_TYPE2_LIMIT: f64 = 0.1;
 
 /// The ten margins in the order in which the guard checks them.
@@ -46,12 +47,12 @@ pub fn to_sine(margin: Sine) -> f64 {
     f64::from(margin.0) / 32768.0
 }
 
-/// Returns the core's length steps per millimetre.
+/// Returns the number of the core's length steps per millimetre at a scale.
 pub fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 
-/// Returns the exact chassis angles of the core's pose.
+/// Returns the exact angles of the core's pose in the chassis frame, deg.
 pub fn chassis_angles_deg(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral_angles()).map(to_degrees)
 }
@@ -59,16 +60,16 @@ pub fn chassis_angles_deg(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
 /// The values of every safety condition at a pose, computed in floating point.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactConditions {
-    /// Sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2, which is negative for crossed crank
-    /// tips.
+    /// The margins as sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2, which is negative for
+    /// crossed crank tips.
     pub margins: [f64; 10],
-    /// Slider travel from nominal.
+    /// The sliders' travels from their nominal lengths, mm.
     pub travels_mm: [f64; 2],
-    /// K2 of head and tail.
+    /// K2 of head and tail, mm.
     pub k2_mm: [f64; 2],
-    /// True for each condition that is broken according to lizard-kinematics. Crossed crank tips count as a broken
+    /// True for each condition that is violated according to lizard-kinematics. Crossed crank tips count as a violated
     /// type-2 margin.
-    pub broken: [bool; 12],
+    pub are_violated: [bool; 12],
     limits: Limits,
     /// The band of each condition, which is the maximum error that the guard may have: first those of the ten margins,
     /// then, in mm, those of the left stroke, the right stroke, K2 of the head and K2 of the tail.
@@ -87,7 +88,7 @@ pub enum Verdict {
 }
 
 impl ExactConditions {
-    /// Computes every condition at chassis angles in degrees.
+    /// Computes every condition at servo angles in the chassis frame, deg.
     ///
     /// # Errors
     /// Fails if a five-bar or a side does not close.
@@ -118,12 +119,12 @@ impl ExactConditions {
             )
         });
         let leg_band = MARGIN_BAND;
-        let mut broken = [false; 12];
+        let mut are_violated = [false; 12];
         for violation in robot.limits().violations(&solution) {
-            broken[condition_index(violation.check)] = true;
+            are_violated[condition_index(violation.check)] = true;
         }
         Ok(Self {
-            broken,
+            are_violated,
             margins,
             travels_mm: [solution.left.s, solution.right.s],
             k2_mm: k2_values,
@@ -148,7 +149,7 @@ impl ExactConditions {
     }
 
     /// Returns the distance of each margin, then of each stroke, from its limit, in bands. Positive distances are safe.
-    /// As in the guard, crossed crank tips break the type-2 limit.
+    /// As in the guard, crossed crank tips violate the type-2 limit.
     pub fn distances_from_limits(&self) -> [f64; 12] {
         let Limits {
             type2,
@@ -205,11 +206,12 @@ fn five_bar_bands(
     type2: f64,
     step_mm: f64,
 ) -> [f64; 3] {
-    let bars = robot.lizard().end(match end {
+    let five_bar = robot.lizard().end(match end {
         End::Head => lizard_kinematics::End::Head,
         End::Tail => lizard_kinematics::End::Tail,
     });
-    let (left_coupler, right_coupler) = (bars.left_coupler_length, bars.right_coupler_length);
+    let (left_coupler, right_coupler) =
+        (five_bar.left_coupler_length, five_bar.right_coupler_length);
     let cosine = (1.0 - type2 * type2).max(0.0).sqrt();
     [
         cosine * tip_distance_mm / (left_coupler * right_coupler),
@@ -220,7 +222,7 @@ fn five_bar_bands(
 }
 
 impl Verdict {
-    /// Judges the pose at chassis angles in degrees.
+    /// Judges the pose at servo angles in the chassis frame, deg.
     pub fn of(robot: &Robot, angles: [f64; 4]) -> Self {
         let Ok(conditions) = ExactConditions::of(robot, angles) else {
             return Self::Unsafe;
@@ -240,7 +242,7 @@ impl Verdict {
 }
 
 /// Returns the index of the five-bar that does not close; `None` if a side does not close.
-pub fn index_of_open_five_bar(fault: &Infeasible) -> Option<usize> {
+pub fn index_of_unclosed_five_bar(fault: &Infeasible) -> Option<usize> {
     match fault.part {
         Part::End(lizard_kinematics::End::Head) => Some(0),
         Part::End(lizard_kinematics::End::Tail) => Some(1),

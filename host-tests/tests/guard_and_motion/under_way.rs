@@ -21,14 +21,14 @@ fn a_hundred_cycles_take_a_hundred_periods() {
         let error = difference.min(1.0 - difference) * f64::from(CYCLE);
         assert!(
             error <= 0.5 * frame_count + 1.0,
-            "{name}: {} is {error} of 2^24 off",
+            "{name}: {} is off by {error} of 2^24 phase steps",
             float_gait.name()
         );
     }
 }
 
 #[test]
-fn every_speed_in_percent_gives_this_share_of_a_gaits_pace() {
+fn every_speed_in_percent_gives_that_share_of_a_gaits_full_pace() {
     const FRAME_COUNT: u32 = 1000;
     let mut rng = rng(8000);
     let mut worst_error = 0.0f64;
@@ -69,7 +69,7 @@ fn every_speed_in_percent_gives_this_share_of_a_gaits_pace() {
             }
         }
     }
-    println!("pace is off by at most {:.2} %", 100.0 * worst_error);
+    println!("the pace is off by at most {:.2} %", 100.0 * worst_error);
     assert!(
         walked_count > 10 * blocked_count,
         "{walked_count} gaits walked, {blocked_count} blocked"
@@ -77,7 +77,7 @@ fn every_speed_in_percent_gives_this_share_of_a_gaits_pace() {
 }
 
 #[test]
-fn a_gait_that_is_ordered_again_continues() {
+fn a_gait_that_is_commanded_again_continues() {
     for named in robots() {
         for gait in named.robot.gaits() {
             let (mut tested, mut reference) =
@@ -102,7 +102,7 @@ fn a_gait_that_is_ordered_again_continues() {
 }
 
 #[test]
-fn every_frame_of_a_running_gait_is_a_pose_of_this_gait() {
+fn every_frame_of_a_running_gait_is_a_pose_of_the_gait() {
     let (mut walked_count, mut blocked_count) = (0, 0);
     for named in robots() {
         for (gait, id) in named

@@ -1,6 +1,6 @@
 //! Tests with damaged sections: the core refuses them, and a damaged section with a valid checksum can harm no servo.
-//! Here the core runs with checks for which the chip has no room: an overflow, or a read beyond the section's end,
-//! fails the test.
+//! On the host, the core runs with checks for which the chip has no room: an overflow, or a read beyond the section's
+//! end, fails the test.
 
 use std::mem::offset_of;
 
@@ -14,7 +14,7 @@ use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{
     Header, MAGIC, Numbers, Region, SPACE_BYTES, SectionError, write_checksum,
 };
-use lizard_core::numbers::units::{PulseWidth, Sine, Sweep};
+use lizard_core::numbers::units::{CYCLES_PER_US, PulseWidth, Sine, Sweep};
 use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::rng;
 use lizard_robot::flash;
@@ -31,7 +31,7 @@ fn find_damage(section: &[u8]) -> Option<SectionError> {
     Robot::open(Region::new(section)).err()
 }
 
-/// Returns the flash after only these first bytes of a section were written.
+/// Returns the flash of a robot of whose section only these first bytes have been written.
 fn partly_written_flash(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
     flash.resize(SPACE_BYTES.into(), 0xff);
@@ -167,7 +167,7 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
         let min_length = size_of::<Header>() + size_of::<Numbers>();
         let mut section = vec![0; rng.usize(min_length..=usize::from(SPACE_BYTES))];
         rng.fill(&mut section);
-        let (_, valid_section) = rng.choice(sections()).expect("sections");
+        let (_, valid_section) = rng.choice(sections()).expect("there are sections");
         put_bytes(&mut section, 0, &valid_section[..LENGTH_BYTES.start]);
         let length = section.len() as u16;
         put_bytes(&mut section, LENGTH_BYTES.start, &length.to_le_bytes());
@@ -183,7 +183,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     let rng = &mut rng(152);
     let (mut refused_count, mut accepted_count) = (0, 0);
     for index in 0..100_000 {
-        let (_, section) = rng.choice(sections()).expect("sections");
+        let (_, section) = rng.choice(sections()).expect("there are sections");
         let mut section = section.clone();
         for _ in 0..=rng.usize(..4) {
             change_random_number(rng, &mut section);
@@ -191,7 +191,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
         write_checksum(&mut section);
         match find_damage(&section) {
             Some(SectionError::Impossible) => refused_count += 1,
-            Some(other_damage) => panic!("section {index} is {other_damage:?}"),
+            Some(error) => panic!("section {index} is {error:?}"),
             None => {
                 accepted_count += 1;
                 if accepted_count % 20 == 0 {
@@ -207,7 +207,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     );
 }
 
-/// The section's gaits exceed the travel that the section states for them. The guard accepts any margin and stroke.
+/// Here the gaits exceed the travel that the section states for them, and the guard accepts any margin and stroke.
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
@@ -231,7 +231,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
         {
             channel.gain = rng.i16(..);
         }
-        let robot = Robot::open(flash(&content.section_bytes())).expect("nothing is out of range");
+        let robot = Robot::open(flash(&content.section_bytes())).expect("every number is in range");
         for id in GaitId::all(robot.gait_count()).skip(1) {
             let mut running_robot = RunningRobot::power_on(robot);
             run_frames(&mut running_robot, 30);
@@ -249,7 +249,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     assert!(held_count > 50, "{held_count} gaits were held");
 }
 
-/// A neutral angle lies outside the servo's travel, so the robot could not stand.
+/// Here a neutral angle lies outside the servo's travel, so the robot could not stand.
 #[test]
 fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     for (named, _) in sections() {
@@ -273,7 +273,7 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
 }
 
 /// Changes a random number of a section: a number of the servos, pins or limits, or of the parts after `Numbers`
-/// (curves, gaits, waveforms, maps). Leaves the bars and the offsets of the parts unchanged: the device trusts them,
+/// (curves, gaits, waveforms, maps). Leaves the bars and the offsets of the parts unchanged: the firmware trusts them,
 /// because the host has checked them.
 fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
     let numbers_start = size_of::<Header>();
@@ -293,7 +293,7 @@ fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
         2 => old_word.wrapping_add(rng.u16(..10)).wrapping_sub(5),
         3 => *rng
             .choice(&[0, 1, 0x7fff, 0x8000, 0x8001, 0xffff])
-            .expect("a number"),
+            .expect("the list is not empty"),
         4 => old_word.wrapping_neg(),
         _ => old_word.wrapping_mul(rng.u16(2..5)),
     };
@@ -303,14 +303,14 @@ fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
 /// Runs a robot with an accepted section and random commands. Checks that every frame ends and that no servo turns
 /// beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
-    let robot = Robot::open(flash(section)).expect("an accepted section");
+    let robot = Robot::open(flash(section)).expect("the section is accepted");
     let mut running_robot = RunningRobot::power_on(robot);
     run_frames(&mut running_robot, 30);
     let gaits: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
     for _ in 0..8 {
         let line = match rng.u8(..8) {
             0..4 => {
-                let id = *rng.choice(&gaits).expect("at least stand");
+                let id = *rng.choice(&gaits).expect("every robot has `stand`");
                 let name: Vec<u8> = robot.gait_name(id).collect();
                 name.into_iter().map(char::from).collect()
             }
@@ -324,7 +324,7 @@ fn check_motion(rng: &mut Rng, section: &[u8]) {
             6 => "center".to_string(),
             _ => (*rng
                 .choice(&["status", "help", "cal", "save", "rest", "stand"])
-                .expect("a command"))
+                .expect("the list is not empty"))
             .to_string(),
         };
         running_robot.board.send(line.as_bytes());
@@ -355,7 +355,7 @@ fn check_pulse(pulse: PulseWidth, servo: &Calibration) {
         servo.clamped_width(servo.travel_max),
     ];
     let travel_range = end_pulses[0].min(end_pulses[1])..=end_pulses[0].max(end_pulses[1]);
-    let allowed_range = 500 * 16 - 1..=2500 * 16 + 1;
+    let allowed_range = 500 * CYCLES_PER_US - 1..=2500 * CYCLES_PER_US + 1;
     assert!(
         pulse.0 == 0 || travel_range.contains(&pulse.0) && allowed_range.contains(&pulse.0),
         "{pulse:?} of {servo:?}"

@@ -1,5 +1,5 @@
-//! Tests of the robot's section of flash: the core reads the numbers that were written, and an invalid section moves no
-//! servo.
+//! Tests of the robot's section of flash: the core reads the numbers that were written, and with an invalid section no
+//! servo moves.
 
 use std::sync::LazyLock;
 

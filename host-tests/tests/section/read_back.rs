@@ -1,5 +1,5 @@
 //! Tests that read sections back with the firmware's reader: each field must match the robot's file. The expected
-//! values come from the robot in floating point, not from the numbers of which the section was made.
+//! values come from the robot in floating point, not from the numbers from which the section was made.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::bars::Bars;
@@ -10,7 +10,7 @@ use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{Header, MapHeader, Numbers, Part, Region};
 use lizard_core::numbers::units::{Scale, Sine, Sweep};
-use lizard_host_tests::rng;
+use lizard_host_tests::{CYCLES_PER_US, rng};
 use lizard_robot::{Robot as FileRobot, STEPS_PER_DEGREE};
 
 use crate::sections;
@@ -102,8 +102,8 @@ fn the_servos_are_read_back() {
             assert_eq!(robot.calibration()[index], calibration);
             let pulse_us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
             for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
-                let error =
-                    f64::from(calibration.width(Sweep(sweep)).0) - 16.0 * pulse_us(sweep.into());
+                let error = f64::from(calibration.width(Sweep(sweep)).0)
+                    - CYCLES_PER_US * pulse_us(sweep.into());
                 // The error is half a cycle for the neutral pulse, half a cycle for the product, and the rounding of
                 // the gain over the travel.
                 assert!(
@@ -227,21 +227,21 @@ fn the_bars_and_the_sliders_are_read_back() {
                 ],
             ),
         ] {
-            let core_side = robot.slider(side);
-            let length = |mm: f64| steps_of_mm(mm, core_side.scale);
+            let slider = robot.slider(side);
+            let length = |mm: f64| steps_of_mm(mm, slider.scale);
             let lengths = [
-                f64::from(core_side.offset),
-                f64::from(core_side.base),
-                f64::from(core_side.front_arm),
-                f64::from(core_side.rear_arm),
-                f64::from(core_side.nominal_length),
+                f64::from(slider.offset),
+                f64::from(slider.base),
+                f64::from(slider.front_arm),
+                f64::from(slider.rear_arm),
+                f64::from(slider.nominal_length),
             ];
             let expected = [offset, base, front, rear, nominal].map(length);
             assert_eq!(lengths, expected, "{name} {side:?}");
-            let steps_per_mm = f64::from(1u32 << core_side.scale.bits);
+            let steps_per_mm = f64::from(1u32 << slider.scale.bits);
             let inward_rounding = [
-                f64::from(core_side.stroke_min) - (nominal + limits.stroke_min) * steps_per_mm,
-                (nominal + limits.stroke_max) * steps_per_mm - f64::from(core_side.stroke_max),
+                f64::from(slider.stroke_min) - (nominal + limits.stroke_min) * steps_per_mm,
+                (nominal + limits.stroke_max) * steps_per_mm - f64::from(slider.stroke_max),
             ];
             let is_rounded_inwards = inward_rounding
                 .iter()
@@ -251,7 +251,7 @@ fn the_bars_and_the_sliders_are_read_back() {
     });
 }
 
-/// A table of a five-bar's couplers. Each has its own argument.
+/// The kind of a table of a five-bar's couplers. Each kind has its own argument.
 #[derive(Clone, Copy, PartialEq)]
 enum CurveKind {
     Rise,
@@ -299,7 +299,7 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                 let table = flash
                     .values::<Table>(address, 1)
                     .get(0)
-                    .expect("a curve")
+                    .expect("the address is that of a curve")
                     .load();
                 for (index, entry) in table.into_iter().enumerate().take(ENTRY_COUNT) {
                     let max_argument = match kind {
@@ -394,8 +394,11 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
              row_count,
          }| {
             let map = (0..i32::from(row_count)).map(|row| {
-                let [first_column, last_column] =
-                    rows.get(next_row).expect("a row").load().map(i32::from);
+                let [first_column, last_column] = rows
+                    .get(next_row)
+                    .expect("the maps have this row")
+                    .load()
+                    .map(i32::from);
                 next_row += 1;
                 let row = 256 * (i32::from(first_row) + row);
                 [
@@ -434,12 +437,12 @@ fn accepts_conditions_of_map(robot: &Robot, map_index: usize, pose: &Pose) -> bo
 #[test]
 fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
     let mut checked_count = 0;
-    let mut robot_with_maps_count = 0;
+    let mut robots_with_maps_count = 0;
     for (named, section) in sections() {
         let flash = Region::new(section);
-        let robot = Robot::open(flash).expect("a robot");
+        let robot = Robot::open(flash).expect("the section is valid");
         let calibration = robot.calibration();
-        robot_with_maps_count +=
+        robots_with_maps_count +=
             usize::from(read_numbers(flash).parts[Part::Rows as usize].count > 0);
         for (map_index, map) in read_maps(flash).into_iter().enumerate() {
             let servos = MAP_SERVOS[map_index];
@@ -470,10 +473,10 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
             }
         }
     }
-    println!("{checked_count} poses of cells, {robot_with_maps_count} robots with maps");
+    println!("{checked_count} poses of cells, {robots_with_maps_count} robots with maps");
     assert!(
-        robot_with_maps_count >= 5 && checked_count > 100_000,
-        "{robot_with_maps_count} {checked_count}"
+        robots_with_maps_count >= 5 && checked_count > 100_000,
+        "{robots_with_maps_count} {checked_count}"
     );
 }
 
@@ -482,7 +485,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
     let rng = &mut rng(153);
     for (named, section) in sections() {
         let flash = Region::new(section);
-        let robot = Robot::open(flash).expect("a robot");
+        let robot = Robot::open(flash).expect("the section is valid");
         let maps = read_maps(flash);
         let mut certified_count = 0;
         for index in 0..20_000 {
@@ -529,7 +532,9 @@ fn different_robots_have_different_hashes_which_do_not_depend_on_the_maps() {
         assert_eq!(robot.hash(), file_robot.firmware().hash(), "{name}");
     });
     for (named, section) in sections() {
-        let hash = Robot::open(Region::new(section)).expect("a robot").hash();
+        let hash = Robot::open(Region::new(section))
+            .expect("the section is valid")
+            .hash();
         let previous = hashes.insert(hash, (named, named.robot.content()));
         // robot.toml may be one of the files of robots/.
         if let Some((previous, content)) = previous {
