@@ -22,8 +22,9 @@ const HIP_SIDE_RANGE: (f64, f64) = (0.0, 500.0);
 /// Largest difference between two lengths that count as equal, mm.
 const LENGTH_TOLERANCE_MM: f64 = 0.005;
 
-/// The keys of the two distances in `[leg]`.
+/// The key of the hips' distance ahead.
 const FORWARD_KEY: &str = "hip_forward";
+/// The key of the hips' distance to the side.
 const SIDE_KEY: &str = "hip_side";
 
 /// The hips' distances from the chassis centre as `[leg]` gives them, mm; `None` for a distance that follows from pivot

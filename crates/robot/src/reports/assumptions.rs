@@ -26,6 +26,7 @@ docs/limits.md has a table of them by MuJoCo, for the paper's robot.";
 #[derive(Clone, Copy)]
 struct ModelInputs {
     ground: Ground,
+    /// The type of all four servos, with their supply.
     servo: ServoType,
     /// Friction of the pins, N mm, and of a slider, N.
     joints: [f64; 2],
@@ -45,7 +46,7 @@ impl ModelInputs {
         }
     }
 
-    /// Simulates a cycle of a gait at a pace, as a share of the gait's own, and returns its movement.
+    /// Simulates a cycle of a gait and returns its movement; `pace` is 1 for the gait's own pace.
     fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
         let Motors {
             per_servo,
@@ -179,6 +180,7 @@ struct Row {
     unit: &'static str,
     /// The value in the prediction.
     nominal: f64,
+    /// The lowest and the highest plausible value.
     range: [f64; 2],
     /// Change of each gait's movement at the lowest and at the highest value of the range, percent.
     changes: Vec<[f64; 2]>,
@@ -232,7 +234,7 @@ impl Assumptions {
     }
 }
 
-/// The movement of a cycle if one assumption is changed, and that assumption.
+/// The movement of a cycle with one assumption changed, and that assumption.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extreme {
     /// The movement: mm ahead, or deg of turn.
@@ -304,9 +306,9 @@ fn distinct_gaits(
             continue;
         }
         let movement = simulate(gait);
-        let is_mirror_or_reverse = |(_, other): &(_, Travel)| {
+        let is_mirror_or_reverse = |(_, listed): &(_, Travel)| {
             let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
-            is_close(movement.forward, other.forward) && is_close(movement.turn, other.turn)
+            is_close(movement.forward, listed.forward) && is_close(movement.turn, listed.turn)
         };
         let moves_noticeably =
             movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;

@@ -1,7 +1,7 @@
 //! Tables about a robot's gaits for people, and the reasons why a pose is refused.
 //!
 //! The author of a gait needs to know three things: how far the gait is from the limits, how it moves the robot, and
-//! how another floor, other feet or softer legs change this movement. Each has its table.
+//! how another floor, other feet or softer legs change this movement. A table answers each question.
 
 mod assumptions;
 mod report;

@@ -16,9 +16,9 @@ use crate::robot::Robot;
 pub struct Row {
     /// Name of the gait.
     pub name: String,
-    /// Time of a cycle at full speed, s.
+    /// Duration of a cycle at full speed, s.
     pub period: f64,
-    /// Margins, strokes and the fastest frame.
+    /// Smallest margins, range of the slider travels, and highest speed.
     pub audit: Audit,
     /// Error of the gait's tables over all 65 536 phases.
     pub table_error: TableError,
@@ -80,7 +80,7 @@ pub const UNDECIDED_NOTE: &str =
 /// similar gaits keep nine tenths of their distance, while slow gaits lose up to a third.
 const SLOW_SPEED: f64 = 200.0;
 
-/// The note about what is assumed for the figures of routines with inputs.
+/// The note on the assumptions behind the figures of routines with inputs.
 pub const WITHOUT_CONTACTS_NOTE: &str =
     "inputs: no contact closes; a wait takes one frame, a gait without an end one cycle\n";
 
@@ -247,7 +247,7 @@ impl fmt::Display for Report {
         if !slow_names.is_empty() {
             writeln!(
                 f,
-                "\nslow steps: {}\nGaits below {SLOW_SPEED:.0} deg/s lose up to a third of their way and half of their turn at an \
+                "\nslow steps: {}\nGaits below {SLOW_SPEED:.0} deg/s lose up to a third of their distance and half of their turn at an \
                  edge of 2 mm (docs/judges.md).",
                 slow_names.join(", ")
             )?;
@@ -268,12 +268,12 @@ impl fmt::Display for Report {
 
 /// The warning for a gait that leaves its servos little reserve, or no reserve.
 fn reserve_warning(name: &str, line_share: f64) -> String {
-    let meaning = match line_share < 1.0 {
+    let consequence = match line_share < 1.0 {
         true => "little is left for play, a cold gear or a long wire",
         false => "above 1 a servo falls behind its pulses",
     };
     format!(
-        "{name}: {line_share:.2} of its servos' torque-speed line; {meaning}: `lizard gaits --servos`\n"
+        "{name}: {line_share:.2} of its servos' torque-speed line; {consequence}: `lizard gaits --servos`\n"
     )
 }
 
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_shown_as_minus_zero() {
+    fn a_value_that_rounds_to_zero_is_shown_without_a_minus_sign() {
         assert_eq!(
             [
                 format_component(Some(-0.004), 2),

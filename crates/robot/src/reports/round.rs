@@ -22,10 +22,10 @@ pub struct Round {
     pub round_count: Option<u16>,
     /// True if a contact may end one of its steps.
     pub has_inputs: bool,
-    /// Time of one round from standing, at full speed, s.
+    /// Duration of one round that starts from standing, at full speed, s.
     pub seconds: f64,
     /// Movement in one round with ideal servos, by the contact model. `None` for a component that depends on
-    /// unmeasurable differences between the pads.
+    /// differences between the pads that cannot be measured.
     pub movement: Prediction,
     /// Movement in one round with servos of limited torque and speed. `None` for the same components as in `movement`.
     pub driven_movement: Prediction,
@@ -38,7 +38,7 @@ impl Round {
         let mut sweeps: Vec<[f64; 4]> = vec![[0.0; 4]];
         sweeps.extend(Self::simulate_sweeps(robot, routine));
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
-        // Which components are undecided depends on the pads alone, so rigid legs suffice to find them.
+        // The undecided components depend on the pads alone, so rigid legs suffice to find them.
         let prediction = robot
             .ground()
             .with_rigid_drive()

@@ -11,81 +11,98 @@ use crate::robot::Robot;
 /// Excess length of the front left foot in the table that varies the stiffness of the feet, mm.
 const EXCESS_LENGTH_MM: f64 = 0.6;
 
-/// A parameter that is varied: its name, its values, and the function that returns the ground with one of them.
-type Change = (&'static str, &'static [f64], fn(&Ground, f64) -> Ground);
+/// A parameter that is varied.
+struct Parameter {
+    /// The heading of the parameter's table.
+    title: &'static str,
+    /// The values that the parameter takes.
+    values: &'static [f64],
+    /// Returns the ground with one of the values.
+    apply: fn(&Ground, f64) -> Ground,
+}
 
 /// The varied parameters in the order of the report.
-const CHANGES: [Change; 5] = [
-    // Friction of a pad that slides backward over that of a pad that slides forward: below 1 for pads mounted in
-    // reverse, 1 for equal friction.
-    (
-        "friction",
-        &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
-        |ground, ratio| Ground {
+const PARAMETERS: [Parameter; 5] = [
+    // Ratio of a pad's friction when it slides backward to its friction when it slides forward: below 1 for pads
+    // mounted in reverse, 1 for equal friction.
+    Parameter {
+        title: "friction",
+        values: &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
+        apply: |ground, ratio| Ground {
             friction_ratio: ratio,
             ..*ground
         },
-    ),
+    },
     // A leg mounted 41.4 deg outward is in line with its servo's horn.
-    (
-        "mount, deg",
-        &[0.0, 20.0, 41.4, 49.0, -41.4],
-        |ground, mount| Ground {
+    Parameter {
+        title: "mount, deg",
+        values: &[0.0, 20.0, 41.4, 49.0, -41.4],
+        apply: |ground, mount| Ground {
             feet: Feet {
                 mount_angle: mount,
                 ..ground.feet
             },
             ..*ground
         },
-    ),
-    ("too long, mm", &[0.5, 1.0, 1.5, 2.0], |ground, twist| {
-        ground_with_stance(ground, ground.stance.stiffness, twist)
-    }),
-    // The last value is the stiffness of leaf springs that are 2 mm thick.
-    ("feet, N/mm", &[1.0, 2.0, 3.3], |ground, stiffness| {
-        ground_with_stance(ground, stiffness, EXCESS_LENGTH_MM)
-    }),
-    ("play, +-deg", &[1.0, 2.0], |ground, play| Ground {
-        drive: Drive {
-            play,
-            ..ground.drive
+    },
+    Parameter {
+        title: "too long, mm",
+        values: &[0.5, 1.0, 1.5, 2.0],
+        apply: |ground, excess_length| {
+            ground_with_stance(ground, ground.stance.stiffness, excess_length)
         },
-        ..*ground
-    }),
+    },
+    // The last value is the stiffness of leaf springs that are 2 mm thick.
+    Parameter {
+        title: "feet, N/mm",
+        values: &[1.0, 2.0, 3.3],
+        apply: |ground, stiffness| ground_with_stance(ground, stiffness, EXCESS_LENGTH_MM),
+    },
+    Parameter {
+        title: "play, +-deg",
+        values: &[1.0, 2.0],
+        apply: |ground, play| Ground {
+            drive: Drive {
+                play,
+                ..ground.drive
+            },
+            ..*ground
+        },
+    },
 ];
 
-/// The ground with feet of this stiffness, and the front left foot too long by `twist` mm.
-fn ground_with_stance(ground: &Ground, stiffness: f64, twist: f64) -> Ground {
+/// The ground with feet of this stiffness (N/mm), and the front left foot too long by `excess_length` (mm).
+fn ground_with_stance(ground: &Ground, stiffness: f64, excess_length: f64) -> Ground {
     Ground {
         stance: Stance {
             stiffness,
-            twist,
+            twist: excess_length,
             ..ground.stance
         },
         ..*ground
     }
 }
 
-/// Predictions with changed parameters for all gaits that move.
+/// Predictions of all gaits that move, for each value of each parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
-    /// For each gait: its name, and the predictions of a cycle for each value of each parameter in [`CHANGES`].
-    rows: Vec<(String, [Vec<Prediction>; CHANGES.len()])>,
+    /// For each gait: its name, and the predictions of a cycle for each value of each parameter in [`PARAMETERS`].
+    rows: Vec<(String, [Vec<Prediction>; PARAMETERS.len()])>,
     /// Stiffness of the robot's own feet, N/mm.
     foot_stiffness: f64,
 }
 
 impl Sensitivity {
-    /// Predicts the gaits of a robot with each changed parameter.
+    /// Predicts the gaits of a robot for each value of each parameter.
     pub fn of(robot: &Robot) -> Self {
         let ground = robot.ground();
         let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
         let rows = moving_gaits.map(|gait| {
-            let cells = CHANGES.map(|(_, values, change)| {
-                let predict = |value: &f64| gait.predict(&change(ground, *value));
-                values.iter().map(predict).collect()
+            let predictions = PARAMETERS.map(|parameter| {
+                let predict = |value: &f64| gait.predict(&(parameter.apply)(ground, *value));
+                parameter.values.iter().map(predict).collect()
             });
-            (gait.name().to_string(), cells)
+            (gait.name().to_string(), predictions)
         });
         Self {
             rows: rows.collect(),
@@ -101,7 +118,7 @@ impl fmt::Display for Sensitivity {
         )?;
         let width = column_width(self.rows.iter().map(|(name, _)| name.as_str()));
         let mut is_every_prediction_decided = true;
-        for (change_index, (title, values, _)) in CHANGES.iter().enumerate() {
+        for (index, Parameter { title, values, .. }) in PARAMETERS.iter().enumerate() {
             f.write_str("\n")?;
             match *title {
                 "too long, mm" => {
@@ -119,12 +136,12 @@ impl fmt::Display for Sensitivity {
                 write!(f, "{value:>15}")?;
             }
             f.write_str("\n")?;
-            for (name, cells) in &self.rows {
-                let cells = &cells[change_index];
-                is_every_prediction_decided &= cells
+            for (name, predictions) in &self.rows {
+                let predictions = &predictions[index];
+                is_every_prediction_decided &= predictions
                     .iter()
-                    .all(|movement| movement.forward.is_some() && movement.turn.is_some());
-                let cells: String = cells.iter().map(format_cell).collect();
+                    .all(|prediction| prediction.forward.is_some() && prediction.turn.is_some());
+                let cells: String = predictions.iter().map(format_cell).collect();
                 writeln!(f, "{}", format!("{name:<width$}{cells}").trim_end())?;
             }
         }
@@ -136,10 +153,10 @@ impl fmt::Display for Sensitivity {
 }
 
 /// Formats a prediction. A turn that rounds to zero is left out.
-fn format_cell(movement: &Prediction) -> String {
-    let turn = match movement.turn {
+fn format_cell(prediction: &Prediction) -> String {
+    let turn = match prediction.turn {
         Some(turn) if turn.abs() < 0.05 => String::new(),
         turn => format_component(turn, 1),
     };
-    format!("{:>9}{turn:>6}", format_component(movement.forward, 1))
+    format!("{:>9}{turn:>6}", format_component(prediction.forward, 1))
 }

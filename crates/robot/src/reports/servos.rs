@@ -1,4 +1,4 @@
-//! The servos' effort in every gait at several supplies and paces, and the resulting movement.
+//! The servos' effort in every gait at several supply voltages and paces, and the resulting movement.
 
 use std::fmt;
 
@@ -15,7 +15,9 @@ pub const PACES_PERCENT: [f64; 2] = [100.0, 50.0];
 /// The figures of a gait at one supply and pace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
+    /// Largest share of its torque-speed line that any servo uses.
     line_share: f64,
+    /// Movement in one cycle with these servos.
     movement: Prediction,
 }
 
@@ -34,6 +36,7 @@ struct Row {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoTable {
     servo: ServoType,
+    /// The three supplies, V.
     supply_volts: [f64; 3],
     /// Pace to which gaits are limited at a low supply, percent of their own pace.
     slow_pace: u8,
@@ -72,6 +75,7 @@ impl ServoTable {
         }
     }
 
+    /// Writes a heading, followed by the supply voltages as the headings of the columns.
     fn write_header(
         &self,
         f: &mut fmt::Formatter,

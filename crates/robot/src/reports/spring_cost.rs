@@ -14,7 +14,7 @@ pub struct SpringCost {
     pub max_lag: f64,
     /// Movement of a cycle divided by the movement with rigid legs: the share of the distance ahead or the share of the
     /// turn, whichever is smaller. `None` if the robot hardly moves on rigid legs, or if its movement on rigid legs
-    /// depends on unmeasurable differences between the pads.
+    /// depends on differences between the pads that cannot be measured.
     pub share_of_rigid: Option<f64>,
 }
 

@@ -1,11 +1,11 @@
-//! The reasons why a robot may not take a pose: its limits, and its servos' travel.
+//! The reasons why a robot must not take a pose: violated limits, and angles outside its servos' travel.
 
 use lizard_kinematics::{Pose, Solution, wrap};
 
 use crate::measures::servo;
 use crate::robot::Robot;
 
-/// Returns a message for each reason why the robot may not take a solved pose; none if the pose is safe.
+/// Returns a message for each reason why the robot must not take a solved pose; none if the pose is safe.
 pub fn refusal_reasons(robot: &Robot, solution: &Solution) -> Vec<String> {
     let limits = robot.limits().violations(solution);
     limits

@@ -7,9 +7,13 @@ use lizard_robot::{
 
 use crate::{gait, paper};
 
+/// The page on gaits.
 const GAITS_PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/gaits.md");
+/// The page on the digital twin.
 const TWIN_PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/twin.md");
+/// The page on the limits of the model.
 const LIMITS_PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
+/// The end of a block that a test fills.
 const END_MARKER: &str = "<!-- end -->";
 
 /// Encloses a text in the lines that mark a code block.
@@ -80,13 +84,14 @@ fn assert_up_to_date(path: &str, page: &str, new_page: &str) {
 }
 
 /// Spring forces in the table of slotted struts, N; `None` stands for a rigid strut.
-const PULLS_N: [Option<f64>; 6] = [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
+const SPRING_FORCES_N: [Option<f64>; 6] =
+    [Some(0.5), Some(1.0), Some(2.0), Some(3.0), Some(5.0), None];
 
-/// Makes the cells of a row of the table of slotted struts: one figure of a gait for each spring force. The springs
+/// Formats the cells of a row of the table of slotted struts: one figure of a gait for each spring force. The springs
 /// have the rate of the paper's coil.
 fn strut_row_cells(name: &str, figure_of: fn(SimulatedCycle) -> f64) -> String {
     let rate = paper().parts().spring.rate();
-    let cells = PULLS_N.map(|force| {
+    let cells = SPRING_FORCES_N.map(|force| {
         let kind = force.map_or(DriveKind::Rigid, |force| {
             DriveKind::Strut(paper().strut_with(force, rate))
         });
@@ -107,14 +112,14 @@ fn strut_row_cells(name: &str, figure_of: fn(SimulatedCycle) -> f64) -> String {
 fn the_page_on_the_twin_shows_the_cost_of_springs() {
     let page = std::fs::read_to_string(TWIN_PAGE).expect(TWIN_PAGE);
     let ground = paper().ground();
-    let (grip, leg) = (ground.mean_pad_friction(), ground.feet.reach);
+    let (pad_friction, leg) = (ground.mean_pad_friction(), ground.feet.reach);
     let text = format!(
-        "The parts weigh {} g. With a friction of {} that gives {grip:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm. The servos are ideal.\n\n\
+        "The parts weigh {} g. With a friction of {} that gives {pad_friction:.2} N for each pad, and {:.1} N mm at a leg of {leg} mm. The servos are ideal.\n\n\
          | pull in a slotted strut, N | 0.5 | 1 | 2 | 3 | 5 | rigid |\n|---|---|---|---|---|---|---|\n\
          | lag in `walk`, deg |{}\n| `walk`, mm in a cycle |{}\n| `trot`, mm in a cycle |{}\n| `left`, deg in a cycle |{}\n",
         ground.body.mass,
         ground.friction_coefficient,
-        grip * leg,
+        pad_friction * leg,
         strut_row_cells("walk", |cycle| cycle.max_lag),
         strut_row_cells("walk", |cycle| cycle.travel.forward),
         strut_row_cells("trot", |cycle| cycle.travel.forward),
@@ -128,8 +133,8 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
     );
 }
 
-/// Makes a robot's row of the table of paces: the gait that loads the servos most at the supply at which the robot
-/// stops, and the highest pace at which every gait leaves the servos enough torque at that supply.
+/// Formats a robot's row of the table of paces: the gait that loads the servos most at the supply voltage at which the
+/// robot stops, and the highest pace at which every gait leaves the servos enough torque at that voltage.
 fn slow_pace_row(file: &str) -> String {
     let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
     let robot = Robot::load(&path).unwrap_or_else(|error| panic!("{error}"));
@@ -147,7 +152,7 @@ fn slow_pace_row(file: &str) -> String {
         .iter()
         .max_by(|(_, a), (_, b)| share_at(a, 1.0).total_cmp(&share_at(b, 1.0)))
         .expect("the robot has gaits");
-    let is_within = |percent: &u8| {
+    let is_sustainable = |percent: &u8| {
         let pace = f64::from(*percent) / 100.0;
         efforts
             .iter()
@@ -155,7 +160,7 @@ fn slow_pace_row(file: &str) -> String {
     };
     let percent = (10..=100)
         .rev()
-        .find(is_within)
+        .find(is_sustainable)
         .expect("some pace is slow enough");
     if robot.supplies().rail.is_some() {
         assert_eq!(robot.supplies().slow_pace, percent, "{file}");

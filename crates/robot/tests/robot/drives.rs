@@ -3,13 +3,13 @@
 
 use lizard_robot::{Body, Drive, DriveKind, Ground, Report, SpringCost, Walker};
 
-use crate::{STUDIED_BODY, cycle_movement, gait, paper, paper_with};
+use crate::{REFERENCE_BODY, cycle_movement, gait, paper, paper_with};
 
-/// Returns the paper's ground with this drive and the studied body.
+/// Returns the paper's ground with this drive and the reference body.
 fn ground_with(drive: Drive) -> Ground {
     Ground {
         drive,
-        body: STUDIED_BODY,
+        body: REFERENCE_BODY,
         ..*paper().ground()
     }
 }
@@ -22,6 +22,7 @@ fn ground_with_strut(force: f64) -> Ground {
     })
 }
 
+/// Returns the ground of a robot whose legs have this play (deg).
 fn ground_with_play(play: f64) -> Ground {
     ground_with(Drive {
         play,
@@ -30,7 +31,7 @@ fn ground_with_play(play: f64) -> Ground {
 }
 
 #[test]
-fn gaits_go_as_far_on_weak_struts_as_another_solver_found() {
+fn gaits_on_weak_struts_go_as_far_as_a_separate_solver_predicts() {
     for (force, expected) in [(0.5, [34.8, 24.6, 14.3]), (1.0, [35.7, 26.7, 15.2])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
             let movement = cycle_movement(gait(paper(), name), &ground_with_strut(force));
@@ -43,7 +44,7 @@ fn gaits_go_as_far_on_weak_struts_as_another_solver_found() {
 }
 
 #[test]
-fn a_strut_of_two_newton_or_more_moves_the_robot_as_a_rigid_link_does() {
+fn struts_with_two_newtons_or_more_move_the_robot_as_rigid_links_do() {
     for name in ["walk", "trot", "crawl", "left", "arc-left"] {
         let gait = gait(paper(), name);
         let rigid_movement = cycle_movement(gait, paper().ground());
@@ -75,7 +76,7 @@ fn a_strut_of_two_newton_or_more_moves_the_robot_as_a_rigid_link_does() {
 }
 
 #[test]
-fn gaits_lose_to_play_what_another_solver_found() {
+fn gaits_with_play_go_as_far_as_a_separate_solver_predicts() {
     for (play_deg, expected) in [(1.0, [33.4, 24.4, 14.1]), (2.0, [31.5, 21.2, 12.8])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
             let cycle = gait(paper(), name).simulate_cycle(&ground_with_play(play_deg));
@@ -98,14 +99,14 @@ fn a_leg_lags_only_in_the_direction_that_lengthens_its_strut() {
     for i in 1..=300 {
         let sweep = 20.0 * f64::sin(f64::from(i) / 20.0);
         walker.move_to([sweep, -sweep, sweep, -sweep]);
-        let lag = walker.lags();
-        assert!(lag[0] > -1e-6 && lag[1] > -1e-6, "{lag:?}");
-        assert!(lag[2] < 1e-6 && lag[3] < 1e-6, "{lag:?}");
+        let lags = walker.lags();
+        assert!(lags[0] > -1e-6 && lags[1] > -1e-6, "{lags:?}");
+        assert!(lags[2] < 1e-6 && lags[3] < 1e-6, "{lags:?}");
     }
 }
 
 #[test]
-fn a_struts_lever_is_the_derivative_of_its_length() {
+fn a_struts_lever_arm_is_the_derivative_of_its_length() {
     let robot = paper();
     let strut = robot.strut_with(4.0, 0.0);
     for (leg, plan) in robot.legs().iter().enumerate() {
@@ -114,10 +115,10 @@ fn a_struts_lever_is_the_derivative_of_its_length() {
                 robot.servos()[leg].neutral + lizard_robot::servo::FORWARD_TURN_SIGN[leg] * sweep;
             let length_at = |lag: f64| {
                 let forward_sign = lizard_robot::servo::FORWARD_TURN_SIGN[leg];
-                let [from, to] = plan
+                let [servo_anchor, leg_anchor] = plan
                     .place_at(angle, angle - forward_sign * lag)
                     .strut_anchors;
-                (to - from).length()
+                (leg_anchor - servo_anchor).length()
             };
             let slope = (length_at(0.001) - length_at(-0.001)) / 0.002f64.to_radians();
             assert!(
@@ -176,8 +177,8 @@ fn a_stiffer_drive_reduces_the_lag_of_its_legs() {
 }
 
 #[test]
-fn a_walk_depends_on_the_pull_divided_by_mass_and_friction() {
-    let walk_cycle = |mass: f64, friction: f64, pull: f64| {
+fn a_walk_depends_on_the_spring_force_divided_by_mass_and_friction() {
+    let walk_cycle = |mass: f64, friction: f64, force: f64| {
         let ground = Ground {
             body: Body {
                 mass,
@@ -185,7 +186,7 @@ fn a_walk_depends_on_the_pull_divided_by_mass_and_friction() {
             },
             friction_coefficient: friction,
             drive: Drive {
-                kind: DriveKind::Strut(paper().strut_with(pull, 0.4 * pull)),
+                kind: DriveKind::Strut(paper().strut_with(force, 0.4 * force)),
                 play: 0.0,
             },
             ..*paper().ground()
@@ -198,16 +199,16 @@ fn a_walk_depends_on_the_pull_divided_by_mass_and_friction() {
 }
 
 #[test]
-fn a_lag_stays_while_no_servo_turns_and_falls_with_the_friction() {
+fn a_lag_is_constant_while_no_servo_turns_and_falls_with_the_friction() {
     let walk = gait(paper(), "walk");
     let mut walker = Walker::new(ground_with_strut(0.5), walk.sweeps(0.0));
     for i in 1..=90 {
         walker.move_to(walk.sweeps(f64::from(i) / 100.0));
     }
-    let (lag, legs) = (walker.lags(), walk.sweeps(0.9));
-    assert!(lag.iter().any(|lag| lag.abs() > 2.0), "{lag:?}");
-    walker.move_to(legs);
-    for (new_lag, old_lag) in walker.lags().into_iter().zip(lag) {
+    let (lags, sweeps) = (walker.lags(), walk.sweeps(0.9));
+    assert!(lags.iter().any(|lag| lag.abs() > 2.0), "{lags:?}");
+    walker.move_to(sweeps);
+    for (new_lag, old_lag) in walker.lags().into_iter().zip(lags) {
         assert!(
             (new_lag - old_lag).abs() < 1e-6,
             "no servo turns, so no lag changes"
@@ -217,7 +218,7 @@ fn a_lag_stays_while_no_servo_turns_and_falls_with_the_friction() {
         friction_coefficient: 0.07,
         ..ground_with_strut(0.5)
     });
-    walker.move_to(legs);
+    walker.move_to(sweeps);
     for lag in walker.lags() {
         assert!(lag.abs() < 0.5, "{lag}");
     }
@@ -249,7 +250,10 @@ fn a_report_shows_the_share_of_the_movement_with_rigid_legs() {
     let report = Report::of(&robot).to_string();
     let trot = report.lines().find(|line| line.starts_with("trot"));
     let cost = SpringCost::of(gait(&robot, "trot"), robot.ground()).expect("the legs lag");
-    let share_text = format!("{:.0}", 100.0 * cost.share_of_rigid.expect("trot"));
+    let share_text = format!(
+        "{:.0}",
+        100.0 * cost.share_of_rigid.expect("trot moves the robot")
+    );
     assert!(
         trot.expect("the report has the gait trot")
             .ends_with(&share_text),
@@ -261,7 +265,7 @@ fn a_report_shows_the_share_of_the_movement_with_rigid_legs() {
 #[test]
 fn mass_and_friction_are_read_from_the_file() {
     let read_ground =
-        |from: &str, to: &str| *paper_with(from, to).expect("the robot is valid").ground();
+        |old: &str, new: &str| *paper_with(old, new).expect("the robot is valid").ground();
     let heavy_ground = read_ground("mass = 435.0 ", "mass = 310\ncentre = [5.0, -2.0] ");
     assert_eq!(
         (heavy_ground.body.mass, heavy_ground.body.mass_centre),

@@ -1,4 +1,4 @@
-//! Snapshots of the tables of the paper's robot, so that a change of a gait can be seen as a diff.
+//! Snapshots of the tables of the paper's robot, so that a change of a gait shows as a diff.
 
 use std::fmt::Write;
 
@@ -6,7 +6,9 @@ use lizard_robot::CheckedGait;
 
 use crate::paper;
 
+/// The folder of the snapshots.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
+/// Number of phases in a snapshot.
 const ROW_COUNT: u32 = 64;
 
 /// Makes a CSV table of a gait: the phase in cycles, and the four servo angles that the firmware reads, deg.
@@ -22,7 +24,7 @@ fn snapshot_csv(gait: &CheckedGait) -> String {
 }
 
 #[test]
-fn every_gait_of_the_papers_robot_is_as_its_snapshot_says() {
+fn every_gait_of_the_papers_robot_equals_its_snapshot() {
     let is_blessing = std::env::var_os("BLESS_GAITS").is_some();
     for gait in paper().gaits() {
         let path = format!("{FOLDER}/{}.csv", gait.name());
@@ -37,7 +39,7 @@ fn every_gait_of_the_papers_robot_is_as_its_snapshot_says() {
             .find(|(stored, current)| stored != current)
         {
             panic!(
-                "{} has changed.\n  was {stored}\n  is  {current}\nIf that is meant, run BLESS_GAITS=1 cargo test -p lizard-robot golden and commit {path}.",
+                "{} has changed.\n  was {stored}\n  is  {current}\nIf this is intended, run BLESS_GAITS=1 cargo test -p lizard-robot golden and commit {path}.",
                 gait.name()
             );
         }
@@ -57,10 +59,10 @@ fn no_snapshot_outlives_its_gait() {
         let name = name.to_string_lossy();
         let gait = name
             .strip_suffix(".csv")
-            .unwrap_or_else(|| panic!("{FOLDER}/{name} is no snapshot"));
+            .unwrap_or_else(|| panic!("{FOLDER}/{name} is not a snapshot"));
         assert!(
             robot.gait(gait).is_some(),
-            "{FOLDER}/{name} has no gait any more"
+            "{FOLDER}/{name} belongs to no gait"
         );
     }
 }

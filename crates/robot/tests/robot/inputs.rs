@@ -5,6 +5,7 @@ use lizard_robot::{Error, Report, Robot, Round, WITHOUT_CONTACTS_NOTE};
 
 use super::{paper, paper_text};
 
+/// Both inputs, each with a free pin.
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
 /// Reads the paper's robot with additional tables.
@@ -29,7 +30,7 @@ fn records_of(step: &str) -> Vec<(u8, u8, u16)> {
     let robot =
         paper_with_tables(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
     let [routine] = robot.routines() else {
-        panic!("one routine");
+        panic!("the robot has one routine");
     };
     assert_eq!(routine.step_count(), 1);
     let fields_of = |step: &Step| (step.kind, step.gait, step.count);
@@ -37,7 +38,7 @@ fn records_of(step: &str) -> Vec<(u8, u8, u16)> {
 }
 
 #[test]
-fn a_step_with_an_input_is_two_records_the_input_first() {
+fn a_step_with_an_input_is_two_records_with_the_input_first() {
     let (button, nose) = (Input::button(15), Input::nose(16));
     let until_record = |input: Input| (Step::UNTIL, input.byte(), 0);
     let gait_index = |name: &str| paper().gait(name).expect(name).index() as u8;
@@ -98,7 +99,7 @@ fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
 }
 
 #[test]
-fn every_free_pin_can_be_an_input_and_a_taken_one_is_refused_with_its_owner() {
+fn every_free_pin_can_be_an_input_and_a_used_pin_is_refused_with_its_owner() {
     let rail = "[supply.rail]\npin = \"A3\"\nratio = 2.0\n";
     for (pin, message) in [
         ("D9", ", which servo.A1 already has"),
@@ -254,7 +255,7 @@ fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
     assert!(include_str!("../../../../docs/quickstart.md").contains(patrol));
     let robot = paper_with_tables(patrol).expect("the robot is valid");
     let [routine] = robot.routines() else {
-        panic!("one routine");
+        panic!("the robot has one routine");
     };
     assert_eq!((routine.step_count(), routine.rounds()), (4, None));
     let core = robot.core();

@@ -15,24 +15,28 @@ mod robots;
 mod routines;
 mod standing;
 
+/// The path of the paper's robot.
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
 
+/// Reads the text of robots/paper.toml.
 fn paper_text() -> String {
     std::fs::read_to_string(PAPER).expect(PAPER)
 }
 
+/// The paper's robot, read once.
 fn paper() -> &'static Robot {
     static ROBOT: LazyLock<Robot> =
         LazyLock::new(|| Robot::load(PAPER).unwrap_or_else(|error| panic!("{error}")));
     &ROBOT
 }
 
+/// The gait with this name, which must exist.
 fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
     robot.gait(name).expect(name)
 }
 
-/// The body for which another implementation of the contact model computed the expected figures.
-const STUDIED_BODY: Body = Body {
+/// The body for which a separate implementation of the contact model computed the expected figures.
+const REFERENCE_BODY: Body = Body {
     mass: 307.0,
     ..Body::DEFAULT
 };
@@ -47,8 +51,8 @@ fn cycle_movement(gait: &CheckedGait, ground: &Ground) -> f64 {
 }
 
 /// Reads the paper's robot with one part of its file replaced.
-fn paper_with(from: &str, to: &str) -> Result<Robot, Error> {
+fn paper_with(old: &str, new: &str) -> Result<Robot, Error> {
     let text = paper_text();
-    assert!(text.contains(from), "robots/paper.toml has no {from:?}");
-    Robot::parse(&text.replacen(from, to, 1))
+    assert!(text.contains(old), "robots/paper.toml has no {old:?}");
+    Robot::parse(&text.replacen(old, new, 1))
 }

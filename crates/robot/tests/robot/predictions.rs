@@ -1,5 +1,5 @@
 //! Predicted movements of the paper's gaits: they match the figures by which the gaits were chosen, and have the
-//! symmetries that the contact model has.
+//! symmetries of the contact model.
 
 use lizard_robot::{Report, Robot, Travel};
 use proptest::prelude::*;
@@ -43,7 +43,7 @@ fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
 }
 
 #[test]
-fn every_gait_of_the_papers_robot_moves_as_another_solver_found() {
+fn every_gait_of_the_papers_robot_moves_as_a_separate_solver_predicts() {
     let robot = paper();
     for (name, forward, turn) in EXPECTED_MOVEMENTS {
         assert_near(name, predict(robot, name), forward, turn);
@@ -51,7 +51,7 @@ fn every_gait_of_the_papers_robot_moves_as_another_solver_found() {
 }
 
 #[test]
-fn the_tables_at_fifty_frames_a_second_go_the_same_way() {
+fn the_tables_at_fifty_frames_a_second_move_the_robot_as_far() {
     let robot = paper();
     for (name, forward, turn) in EXPECTED_MOVEMENTS {
         let gait = gait(robot, name);
@@ -61,7 +61,7 @@ fn the_tables_at_fifty_frames_a_second_go_the_same_way() {
 }
 
 #[test]
-fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
+fn a_gesture_of_the_head_sets_two_feet_against_two_and_is_undecided() {
     let robot = paper();
     assert_eq!(robot.predict(gait(robot, "look")).forward, None);
     let report = Report::of(robot).to_string();
@@ -77,7 +77,7 @@ fn a_gesture_of_the_head_pulls_two_feet_against_two_and_is_undecided() {
 }
 
 #[test]
-fn a_table_read_backwards_leads_back() {
+fn a_reversed_gait_undoes_its_movement() {
     let robot = paper();
     let walk = predict(robot, "walk");
     let back = predict(robot, "back");
@@ -108,11 +108,11 @@ fn left_and_right_are_mirror_images() {
 }
 
 #[test]
-fn a_sine_trot_gets_nowhere() {
+fn a_sinusoidal_trot_does_not_move_the_robot() {
     let robot = paper();
     let sweeps_at = |i: i32| {
-        let psi = 20.0 * (f64::from(i) * std::f64::consts::TAU / 400.0).sin();
-        [psi, -psi, psi, -psi]
+        let sweep = 20.0 * (f64::from(i) * std::f64::consts::TAU / 400.0).sin();
+        [sweep, -sweep, sweep, -sweep]
     };
     let travel = robot.ground().travel((0..=400).map(sweeps_at));
     assert!(
@@ -122,7 +122,7 @@ fn a_sine_trot_gets_nowhere() {
 }
 
 #[test]
-fn twice_the_samples_change_no_prediction_by_0_01_mm_or_deg() {
+fn twice_as_many_samples_change_no_prediction_by_0_01_mm_or_deg() {
     let robot = paper();
     for gait in robot.gaits() {
         let sweeps_at = |i| gait.sweeps(gait.phase_at(gait.period() * f64::from(i) / 1000.0));
@@ -139,13 +139,14 @@ fn twice_the_samples_change_no_prediction_by_0_01_mm_or_deg() {
     }
 }
 
+/// Returns the predicted distance of one cycle of a gait, mm.
 fn forward_of(robot: &Robot, name: &str) -> f64 {
     let forward = robot.predict(gait(robot, name)).forward;
     forward.unwrap_or_else(|| panic!("{name} is undecided"))
 }
 
 #[test]
-fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
+fn legs_mounted_outward_shorten_walk_far_more_than_crawl() {
     for mount in ["41.0", "49.0"] {
         let robot =
             paper_with("mount = 0.0", &format!("mount = {mount}")).expect("the robot is valid");
@@ -155,32 +156,32 @@ fn legs_mounted_outward_spoil_walk_and_spare_crawl() {
 }
 
 #[test]
-fn pads_that_grip_backward_help_forward_gaits_until_reverse_collapses() {
-    let even_robot = paper();
+fn pads_that_grip_backward_lengthen_walk_and_shorten_back_until_it_goes_forward() {
+    let paper_robot = paper();
     let robot_with_ratio = |ratio: &str| {
         paper_with("_forward = 1.0", &format!("_forward = {ratio}")).expect("the robot is valid")
     };
     for ratio in ["1.1", "1.25", "1.5"] {
         let robot = robot_with_ratio(ratio);
-        assert!(forward_of(&robot, "walk") > forward_of(even_robot, "walk"));
+        assert!(forward_of(&robot, "walk") > forward_of(paper_robot, "walk"));
         assert!(
-            forward_of(&robot, "back") > forward_of(even_robot, "back"),
-            "grip costs some of the way back"
+            forward_of(&robot, "back") > forward_of(paper_robot, "back"),
+            "the grip shortens the distance backward"
         );
         assert!(
             forward_of(&robot, "back") < -30.0,
-            "but the robot still walks back"
+            "the robot still walks backward"
         );
     }
     assert!(
         forward_of(&robot_with_ratio("2.0"), "back") > 0.0,
-        "too much grip turns the way back into a way forward"
+        "with too much grip, back walks forward"
     );
 }
 
 proptest! {
     #[test]
-    fn a_path_that_retraces_itself_leads_home(
+    fn a_path_that_is_retraced_ends_where_it_started(
         path in prop::collection::vec(prop::array::uniform4(-20.0f64..20.0), 2..6),
     ) {
         let robot = paper();

@@ -7,9 +7,9 @@ use crate::{paper_text, paper_with};
 /// A mistake in the paper's robot.toml.
 struct Mistake {
     /// The text of the file that is replaced.
-    from: String,
+    old: String,
     /// The text that replaces it.
-    to: String,
+    new: String,
     /// The message without the file's name and line.
     message: String,
 }
@@ -25,8 +25,8 @@ fn read_mistakes() -> impl Iterator<Item = Mistake> {
             text.collect::<Vec<_>>().join("\n")
         };
         Mistake {
-            from: lines_with('-'),
-            to: lines_with('+'),
+            old: lines_with('-'),
+            new: lines_with('+'),
             message: lines_with('='),
         }
     })
@@ -35,27 +35,27 @@ fn read_mistakes() -> impl Iterator<Item = Mistake> {
 #[test]
 fn every_mistake_gets_its_message() {
     assert!(read_mistakes().count() > 100);
-    for Mistake { from, to, message } in read_mistakes() {
-        let error = paper_with(&from, &to)
+    for Mistake { old, new, message } in read_mistakes() {
+        let error = paper_with(&old, &new)
             .err()
-            .unwrap_or_else(|| panic!("{to:?} was accepted"));
+            .unwrap_or_else(|| panic!("{new:?} was accepted"));
         let location = format!("robot.toml:{}: ", error.line.expect("the error has a line"));
         let full_message = error.to_string();
-        // The place is at the start, or at the end if the message begins with the consequence for the robot.
+        // The location comes first, or last if the message begins with the consequence for the robot.
         assert!(full_message.contains(&location), "{full_message}");
         assert_eq!(
             full_message.replacen(&location, "", 1),
             message,
-            "for {to:?}"
+            "for {new:?}"
         );
     }
 }
 
 #[test]
 fn every_mistake_gets_the_line_of_its_key_or_table() {
-    for Mistake { from, to, .. } in read_mistakes() {
-        let text = paper_text().replacen(&from, &to, 1);
-        let error = Robot::parse(&text).expect_err(&to);
+    for Mistake { old, new, .. } in read_mistakes() {
+        let text = paper_text().replacen(&old, &new, 1);
+        let error = Robot::parse(&text).expect_err(&new);
         let line = text
             .lines()
             .nth(error.line.expect("the error has a line") - 1);
@@ -86,9 +86,10 @@ fn write_temporary_file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
     path
 }
 
+/// Returns the error message for a file, with `FILE` in place of its path.
 fn refusal_of(path: &std::path::Path) -> String {
     Robot::load(path)
-        .expect_err("the file is no robot")
+        .expect_err("the file is not a robot file")
         .to_string()
         .replacen(&path.display().to_string(), "FILE", 1)
 }

@@ -51,7 +51,7 @@ fn every_table_is_within_half_a_degree_at_every_phase() {
 }
 
 #[test]
-fn every_gait_is_safe_between_its_samples_too() {
+fn every_gait_is_also_safe_between_its_samples() {
     for_each_gait(|file, robot, gait| {
         for phase in (0..=u16::MAX).step_by(7) {
             let pose = gait.table_angles(phase).into();
@@ -115,15 +115,16 @@ fn an_audit_has_the_least_margins_of_all_phases() {
 }
 
 #[test]
-fn the_fastest_frame_is_the_fastest_in_either_direction() {
+fn the_peak_speed_is_the_highest_in_either_direction() {
     for_each_gait(|file, robot, gait| {
         let phase_per_frame = 0.02 / gait.period();
         let mut largest_speed = 0.0f64;
         for i in 0..1000 {
             let phase = f64::from(i) / 1000.0;
-            let (from, to) = (gait.angles(phase), gait.angles(phase + phase_per_frame));
+            let (angles, next_angles) = (gait.angles(phase), gait.angles(phase + phase_per_frame));
             for servo in 0..4 {
-                largest_speed = largest_speed.max((to[servo] - from[servo]).abs() * 50.0);
+                largest_speed =
+                    largest_speed.max((next_angles[servo] - angles[servo]).abs() * 50.0);
             }
         }
         let peak = gait.audit().peak_speed;
@@ -157,8 +158,8 @@ fn every_gait_has_its_index_and_name_and_stays_within_the_servos_pulses() {
     for_each_robot(|file, robot| {
         for (index, gait) in robot.gaits().iter().enumerate() {
             assert_eq!(gait.index(), index);
-            let spoken_name = gait.name().replace('-', " ");
-            assert_eq!(robot.gait(&spoken_name), Some(gait), "{file}");
+            let console_name = gait.name().replace('-', " ");
+            assert_eq!(robot.gait(&console_name), Some(gait), "{file}");
             for phase in (0..=u16::MAX).step_by(64) {
                 for (servo, sweep) in robot.servos().iter().zip(gait.table_sweeps(phase)) {
                     let pulse = servo.neutral_us
@@ -176,11 +177,11 @@ fn every_gait_has_its_index_and_name_and_stays_within_the_servos_pulses() {
 }
 
 #[test]
-fn a_robots_sweeps_are_zero_where_it_stands_and_positive_ahead() {
+fn sweeps_are_zero_at_neutral_and_positive_if_the_feet_are_forward() {
     for_each_robot(|file, robot| {
         let neutral_angles: [f64; 4] = robot.neutral_pose().into();
         assert_eq!(robot.sweeps(neutral_angles), [0.0; 4], "{file}");
-        // theta1 and theta5 fall, theta4 and theta8 rise, as the feet go forward.
+        // As the feet go forward, theta1 and theta5 decrease, theta4 and theta8 increase.
         let forward_change_deg = [-3.0, 3.0, 3.0, -3.0];
         let angles = std::array::from_fn(|i| neutral_angles[i] + forward_change_deg[i]);
         for sweep in robot.sweeps(angles) {

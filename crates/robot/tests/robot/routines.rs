@@ -17,6 +17,7 @@ fn refusal_of(lines: &str) -> String {
     result.map(|_| ()).expect_err(lines).to_string()
 }
 
+/// A routine with steps of a given time, of a number of cycles, and without either.
 const PATROL: &str = r#"
 [routine.patrol]
 steps = ["stand 1 s", "walk 4", "left 6", "look 1", "rest"]
@@ -26,7 +27,9 @@ repeat = 3
 #[test]
 fn the_steps_and_the_repeats_of_a_routine_are_read() {
     let robot = paper_with_tables(PATROL).expect("the routine is valid");
-    let routine = robot.routine("patrol").expect("the file defines it");
+    let routine = robot
+        .routine("patrol")
+        .expect("the file defines the routine");
     let gait_index_of = |name: &str| robot.gait(name).expect(name).index() as u8;
     let steps = [
         (Step::FRAMES, gait_index_of("stand"), 50),
@@ -52,13 +55,16 @@ fn names_of_two_words_and_times_with_decimals_are_read() {
     let text = r#"[routine.about-face]
 steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "stand 999 s"]"#;
     let robot = paper_with_tables(text).expect("the routine is valid");
-    let arc_index = robot.gait("arc-left").expect("the file defines it").index() as u8;
+    let arc_index = robot
+        .gait("arc-left")
+        .expect("the file defines the gait")
+        .index() as u8;
     let steps: Vec<_> = robot
         .routine("about face")
-        .expect("the file defines it")
+        .expect("the file defines the routine")
         .step_records()
         .to_vec();
-    let steps_read: Vec<_> = steps
+    let step_fields: Vec<_> = steps
         .iter()
         .map(|step| (step.kind, step.gait, step.count))
         .collect();
@@ -69,7 +75,7 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
         (Step::REST, 0, 1),
         (Step::FRAMES, 0, 49_950),
     ];
-    assert_eq!(steps_read, expected);
+    assert_eq!(step_fields, expected);
 }
 
 #[test]
@@ -77,17 +83,17 @@ fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
     let robot = paper_with_tables(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n"))
         .expect("both routines are valid");
     let core = robot.core();
-    let gaits = robot.gaits().len();
-    assert_eq!(core.gait_count(), gaits + 2);
+    let gait_count = robot.gaits().len();
+    assert_eq!(core.gait_count(), gait_count + 2);
     let ids: Vec<_> = lizard_core::numbers::gaits::GaitId::all(core.gait_count()).collect();
     for (index, id) in ids.iter().enumerate() {
-        assert_eq!(core.gait(*id).is_routine(), index >= gaits);
-        if index < gaits {
+        assert_eq!(core.gait(*id).is_routine(), index >= gait_count);
+        if index < gait_count {
             let paper_gait = paper().core().gait(*id);
             assert_eq!(core.gait(*id), paper_gait);
         }
     }
-    for (id, routine) in ids[gaits..].iter().zip(robot.routines()) {
+    for (id, routine) in ids[gait_count..].iter().zip(robot.routines()) {
         let name: String = core.gait_name(*id).map(char::from).collect();
         assert_eq!(name, routine.name());
         let record = core.gait(*id);
@@ -213,7 +219,7 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
 }
 
 #[test]
-fn an_existing_or_invalid_name_is_refused() {
+fn the_name_of_a_gait_or_an_invalid_name_is_refused() {
     for (name, message) in [
         (
             "walk",
@@ -239,7 +245,7 @@ fn an_existing_or_invalid_name_is_refused() {
 }
 
 #[test]
-fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
+fn a_round_takes_as_long_and_goes_as_far_as_its_gaits_and_the_changes_between_them() {
     let robot = paper_with_tables(
         "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
     )
@@ -253,11 +259,11 @@ fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
         .try_into()
         .expect("there are three routines");
     let walk_forward = robot
-        .predict(robot.gait("walk").expect("the file defines it"))
+        .predict(robot.gait("walk").expect("the file defines the gait"))
         .forward
         .expect("the movement is decided");
     let left_turn = robot
-        .predict(robot.gait("left").expect("the file defines it"))
+        .predict(robot.gait("left").expect("the file defines the gait"))
         .turn
         .expect("the movement is decided");
     // Ten cycles of one second each, and the changes from and to the neutral pose.
@@ -280,6 +286,6 @@ fn a_round_takes_its_cycles_and_changes_and_leads_as_far_as_its_gaits() {
     let share = about_round.movement.turn.expect("the movement is decided") / (5.0 * left_turn);
     assert!((0.9..1.1).contains(&share), "{share}");
     assert_eq!((about_round.round_count, about_round.step_count), (None, 2));
-    // Two feet pull against two: unmeasurable differences between the pads decide whether the robot moves.
+    // Two feet pull against two: differences between the pads that cannot be measured decide whether the robot moves.
     assert_eq!(gaze_round.movement.forward, None);
 }

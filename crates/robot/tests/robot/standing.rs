@@ -1,10 +1,10 @@
-//! The loads of the four feet, which statics alone does not determine, and the distance that the robot loses if a foot
-//! is too long.
+//! The loads of the four feet, which statics alone does not determine, and the loss of distance if a foot is too long.
 
 use lizard_robot::{Body, Ground, Stance, Walker};
 
-use crate::{STUDIED_BODY, cycle_movement, gait, paper, paper_with};
+use crate::{REFERENCE_BODY, cycle_movement, gait, paper, paper_with};
 
+/// The gaits of the paper's robot that move it.
 const GAITS: [&str; 8] = [
     "walk",
     "trot",
@@ -24,13 +24,13 @@ fn ground_with(stiffness: f64, twist: f64) -> Ground {
             twist,
             ..Stance::DEFAULT
         },
-        body: STUDIED_BODY,
+        body: REFERENCE_BODY,
         ..*paper().ground()
     }
 }
 
 #[test]
-fn a_diagonal_loaded_four_tenths_more_costs_as_much_as_another_solver_found() {
+fn a_diagonal_with_four_tenths_more_load_costs_as_much_as_a_separate_solver_predicts() {
     // The expected figures come from a separate implementation, in which the feet of one diagonal always carry
     // four tenths more load, and the other two feet four tenths less.
     for (name, expected) in [
@@ -56,7 +56,7 @@ fn a_diagonal_loaded_four_tenths_more_costs_as_much_as_another_solver_found() {
 }
 
 #[test]
-fn on_soft_feet_a_foot_a_millimetre_too_long_costs_no_gait_three_percent() {
+fn on_soft_feet_a_foot_a_millimetre_too_long_costs_every_gait_less_than_three_percent() {
     let Stance {
         stiffness, twist, ..
     } = paper().ground().stance;
@@ -84,7 +84,7 @@ fn on_stiff_feet_a_foot_0_6_mm_too_long_costs_three_quarters_of_the_movement() {
 }
 
 #[test]
-fn the_cost_depends_on_stiffness_times_length_over_weight() {
+fn the_cost_depends_on_stiffness_times_excess_length_divided_by_weight() {
     let gait = gait(paper(), "walk");
     let movement = cycle_movement(gait, &ground_with(2.0, 0.6));
     assert!((cycle_movement(gait, &ground_with(0.5, 2.4)) - movement).abs() < 1e-6);
