@@ -141,8 +141,8 @@ impl<'a> Problem<'a> {
     }
 
     /// The movements of the robot that the model predicts. No robot has negative play, but a fit may try it: then the
-    /// fit of a robot without play can err in both directions. The movements for negative play are extrapolated as 2
-    /// f(0) - f(-play). Other keys are raised to their smallest possible values.
+    /// fit of a robot without play can err in both directions. The movements for negative play are extrapolated as
+    /// `2 f(0) - f(-play)`. Other keys are raised to their smallest possible values.
     fn robot_travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY_INDEX] < 0.0 {
             let travels_with_play = |play: f64| {

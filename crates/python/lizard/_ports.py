@@ -1,4 +1,4 @@
-"""Ends of a serial line: a real port, and a simulated board in real time."""
+"""Serial ports: one of this machine, and that of a simulated board in real time."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import serial
 from lizard import _lizard
 
 FRAME = 0.02
-"""Seconds of a frame."""
+"""Time from one frame to the next, s."""
 
 
 class Port(Protocol):
-    """A serial line. `read` waits a moment, and returns b"" if nothing has come."""
+    """A serial port. `read` waits for a frame at most, and returns b"" if nothing has arrived."""
 
     def read(self) -> bytes: ...
     def write(self, data: bytes) -> None: ...
@@ -23,7 +23,7 @@ class Port(Protocol):
 
 
 class SerialPort:
-    """A port of this machine; raises OSError once it is gone."""
+    """A port of this machine; raises OSError once the port has disappeared."""
 
     def __init__(self, name: str, baud: int) -> None:
         self._serial = serial.Serial(name, baud, timeout=FRAME, exclusive=True)
@@ -39,25 +39,25 @@ class SerialPort:
 
 
 class SimulatedPort:
-    """The firmware's core without a chip, a frame for each 20 ms of this machine's time."""
+    """The firmware's core without a chip, which runs a frame for each 20 ms of this machine's time."""
 
     def __init__(self, robot: _lizard.Robot) -> None:
         self.board = _lizard.Board(robot)
-        self._sent = bytearray()
+        self._unread = bytearray()
         self._lock = threading.Lock()
-        self._next = time.monotonic()
+        self._next_frame_time = time.monotonic()
 
     def read(self) -> bytes:
-        self._next += FRAME
-        time.sleep(max(0.0, self._next - time.monotonic()))
+        self._next_frame_time += FRAME
+        time.sleep(max(0.0, self._next_frame_time - time.monotonic()))
         with self._lock:
-            data = bytes(self._sent)
-            self._sent.clear()
+            data = bytes(self._unread)
+            self._unread.clear()
         return self.board.frame(data).encode()
 
     def write(self, data: bytes) -> None:
         with self._lock:
-            self._sent += data
+            self._unread += data
 
     def close(self) -> None:
         pass

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from lizard._ports import FRAME
 from lizard.model import Array, Model
 
-REACH = 30.0
-"""Sweep of a servo from neutral that the actions -1 and 1 ask for, deg."""
+MAX_SWEEP = 30.0
+"""Sweep of a servo from neutral for the actions -1 and 1, deg."""
 TIMESTEP = 0.001
-"""Time step of the engine, s: the coarsest with which a cycle moves the robot as far as with 0.2 ms, within 2 %."""
+"""Time step of the engine, s: the largest with which a cycle moves the robot as far as with 0.2 ms, within 2 %."""
 SETTLING_TIME = 0.5
 """Time for the robot to settle on the floor before the first frame, s."""
 
@@ -28,8 +28,8 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     """The robot on a level floor; each call of `step` advances one frame of 20 ms.
 
     Action, (4,), -1 to 1: the targets of A1 to A4 as sweeps from neutral, counter-clockwise positive, in units of
-    30 deg. As on the board, a target is approached at most as fast as `[limits] gait_slew`, and a pose that breaks a
-    limit is refused: the last safe one is held.
+    30 deg. As on the board, a target is approached at most as fast as `[limits] gait_slew`, and a pose that violates
+    a limit is refused: the last safe pose is held.
 
     Observation, (15,): the servos' sweeps (rad) and rates (rad/s), the body's velocity forward and to the left (m/s)
     and its turn (rad/s), and the targets (rad).
@@ -92,19 +92,19 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        wanted_sweeps = np.clip(action, -1, 1) * math.radians(REACH)
+        target_sweeps = np.clip(action, -1, 1) * math.radians(MAX_SWEEP)
         target = self._target + np.clip(
-            wanted_sweeps - self._target, -self._max_change, self._max_change
+            target_sweeps - self._target, -self._max_change, self._max_change
         )
-        held = not self.robot.solve(self.robot.neutral + np.degrees(target)).safe
-        if not held:
+        is_held = not self.robot.solve(self.robot.neutral + np.degrees(target)).safe
+        if not is_held:
             self._target = target
         self.data.ctrl[:] = self._target
-        before = self._forward_mm()
+        previous_forward = self._forward_mm()
         mujoco.mj_step(self.engine, self.data, self._substeps)
         has_diverged = not np.isfinite(self.data.qpos).all()
-        reward = 0.0 if has_diverged else self._forward_mm() - before
-        return self._observation(), reward, has_diverged, False, self._info(held)
+        reward = 0.0 if has_diverged else self._forward_mm() - previous_forward
+        return self._observation(), reward, has_diverged, False, self._info(is_held)
 
     def _chassis_pose(self) -> tuple[float, float, float]:
         """Position of the chassis, to the right and forward (mm), and its heading (rad)."""
@@ -128,7 +128,7 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             [*servos, body, self._target], dtype=np.float32, casting="same_kind"
         )
 
-    def _info(self, held: bool) -> dict[str, Any]:
+    def _info(self, is_held: bool) -> dict[str, Any]:
         x, y, heading = self._chassis_pose()
         turn = math.remainder(heading - self._start_pose[2], math.tau)
         forward, left = y - self._start_pose[1], self._start_pose[0] - x
@@ -136,7 +136,7 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             "forward": forward,
             "left": left,
             "turn": math.degrees(turn),
-            "held": held,
+            "held": is_held,
         }
 
 

@@ -1,4 +1,4 @@
-"""A robot.toml: kinematics of its linkage, and its gaits."""
+"""The model of a robot.toml: kinematics of its linkage, and its gaits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MARGINS: tuple[str, ...] = tuple(_lizard.MARGINS)
 
 
 class Travel(NamedTuple):
-    """Movement of the body; a part is NaN if it depends on a tie of two feet against two."""
+    """Movement of the body; a component is NaN if it is undecided because two feet pull against the other two."""
 
     forward: float
     """mm"""
@@ -33,17 +33,17 @@ class Solution:
     """Joints of the linkage at poses of the shape (..., 4); NaN where a loop does not close."""
 
     head: Array
-    """Point of the head, mm, (..., 2)."""
+    """End point of the head, mm, (..., 2)."""
     tail: Array
-    """Point of the tail, mm, (..., 2)."""
+    """End point of the tail, mm, (..., 2)."""
     couplers: Array
-    """Couplers theta2, theta3 (head), theta6, theta7 (tail), deg, (..., 4)."""
+    """Coupler angles theta2, theta3 (head), theta6, theta7 (tail), deg, (..., 4)."""
     directions: Array
     """Directions of the left and the right slider, rear to front, deg, (..., 2)."""
     strokes: Array
     """Travels of the left and the right slider from nominal, mm, (..., 2)."""
     margins: Array
-    """Sines named by `MARGINS`, (..., 10): 1 is best, 0 is singular, negative is another assembly."""
+    """Sines named by `MARGINS`, (..., 10): 1 is best, 0 is singular, negative is another assembly mode."""
     safe: NDArray[np.bool_]
     """True where limits and servos allow the pose, (...)."""
 
@@ -53,9 +53,9 @@ class Mobility:
     """Degrees of freedom of the body at poses of the shape (..., 4), by the rank of its constraints."""
 
     freedoms: NDArray[np.int_]
-    """Freedoms while the servos turn, (...): 4 away from singularities."""
+    """Degrees of freedom while the servos turn, (...): 4 away from singularities."""
     loose: NDArray[np.int_]
-    """Freedoms while the servos hold, (...): more than 0 at a type-2 singularity."""
+    """Degrees of freedom while the servos hold, (...): more than 0 at a type-2 singularity."""
 
 
 @dataclass(frozen=True)
@@ -72,20 +72,20 @@ class Gait:
     pulses: Array
     """Pulse widths in each frame, us, (n, 4)."""
     peak_speed: float
-    """Fastest turn of a servo over a frame, deg/s."""
+    """Largest speed of a servo over a frame, deg/s."""
     least_margin: tuple[str, float]
     """Name and value of the smallest margin in a cycle."""
     _robot: _lizard.Robot
 
     def predict(self, *, with_servos: bool = False) -> Travel:
-        """Predicts one cycle by the contact model: with ideal servos, or with those of robot.toml."""
+        """Predicts the movement per cycle by the contact model: with ideal servos, or with those of robot.toml."""
         return Travel(*self._robot.predict(self.name, with_servos))
 
 
 class Model:
     """A robot whose every value and gait has been checked.
 
-    Arrays of poses have any shape that ends with 4, in servo order; arrays of points any that ends with 2.
+    Arrays of poses have any shape that ends with 4, in servo order; arrays of points have any shape that ends with 2.
     """
 
     def __init__(self, robot: _lizard.Robot) -> None:
@@ -93,9 +93,9 @@ class Model:
 
     @staticmethod
     def from_toml(source: str | os.PathLike[str]) -> Model:
-        """Reads a file, or the text of one: a str with a line break is text.
+        """Reads a robot.toml file, or its text: a str with a line break is text.
 
-        Raises RobotFileError with the sentence of `lizard gaits`, its `file`, `line` and `key`.
+        Raises RobotFileError with the message of `lizard gaits`, and with `file`, `line` and `key` of the mistake.
         """
         if isinstance(source, str) and "\n" in source:
             return Model(_lizard.Robot(source))
@@ -103,11 +103,11 @@ class Model:
 
     @staticmethod
     def default() -> Model:
-        """The robot of the paper, as the project's robot.toml has it."""
+        """The robot of the project's robot.toml, which is that of the paper."""
         return Model(_lizard.Robot(default_toml()))
 
     def with_gait(self, table: str) -> Model:
-        """The same body with `stand` and one other gait: its table `[gait.name]` of robot.toml.
+        """The same robot with `stand` and one other gait, given as its table `[gait.name]` of robot.toml.
 
         Raises RobotFileError, as `from_toml` does.
         """
@@ -125,12 +125,12 @@ class Model:
 
     @property
     def travel(self) -> Array:
-        """Least and greatest sweep of each servo from neutral, deg, (4, 2)."""
+        """Smallest and largest sweep of each servo from neutral, deg, (4, 2)."""
         return np.array(self._robot.travel())
 
     @property
     def gait_slew(self) -> float:
-        """Fastest turn of a servo that a gait may ask for, deg/s."""
+        """Largest servo speed that a gait may use, deg/s."""
         return self._robot.gait_slew()
 
     @property
@@ -140,17 +140,26 @@ class Model:
 
     def gait(self, name: str) -> Gait:
         """Finds a gait by its name; raises KeyError with all names."""
-        period, speed, least, times, angles = self._robot.gait(name)
+        period, peak_speed, least_margin, times, angles = self._robot.gait(name)
         pulses = self._robot.pulses(angles)
         name = name.replace(" ", "-")
-        return Gait(name, period, times, angles, pulses, speed, least, self._robot)
+        return Gait(
+            name,
+            period,
+            times,
+            angles,
+            pulses,
+            peak_speed,
+            least_margin,
+            self._robot,
+        )
 
     def solve(self, angles: ArrayLike) -> Solution:
         """Forward kinematics: every joint and margin for servo angles (..., 4), deg."""
         poses, shape = _rows(angles, 4)
-        made = self._robot.solve(poses).reshape(*shape, 23)
+        columns = self._robot.solve(poses).reshape(*shape, 23)
         head, tail, couplers, directions, strokes, margins, safe = np.split(
-            made, [2, 4, 8, 10, 12, 22], axis=-1
+            columns, [2, 4, 8, 10, 12, 22], axis=-1
         )
         is_safe = safe[..., 0] > 0
         return Solution(head, tail, couplers, directions, strokes, margins, is_safe)
@@ -160,22 +169,22 @@ class Model:
     ) -> Array:
         """Inverse kinematics: servo angles (..., 4), deg, that put head and tail at points (..., 2), mm.
 
-        The elbows are outward, as the robot is built. The servos of an end that is not given are at neutral. The
-        two of an end whose point is out of reach are NaN.
+        The elbows are outward, as the robot is built. An end that is not given has its servos at neutral; an end whose
+        point is out of reach has NaN for both servos.
         """
-        parts = [
-            (ends, self.working_modes(name, points)[..., 0, :])
-            for ends, name, points in [([0, 1], "head", head), ([3, 2], "tail", tail)]
+        end_angles = [
+            (servos, self.working_modes(name, points)[..., 0, :])
+            for servos, name, points in [([0, 1], "head", head), ([3, 2], "tail", tail)]
             if points is not None
         ]
-        shape = np.broadcast_shapes(*(part.shape[:-1] for _, part in parts))
+        shape = np.broadcast_shapes(*(values.shape[:-1] for _, values in end_angles))
         angles = np.broadcast_to(self.neutral, (*shape, 4)).copy()
-        for ends, part in parts:
-            angles[..., ends] = part
+        for servos, values in end_angles:
+            angles[..., servos] = values
         return angles
 
     def working_modes(self, end: str, points: ArrayLike) -> Array:
-        """All ways to put an end, "head" or "tail", at points (..., 2), mm: angles (..., 4, 2), deg.
+        """Servo angles (..., 4, 2), deg, that put an end, "head" or "tail", at points (..., 2), mm, by working mode.
 
         The four modes are outward-outward, outward-inward, inward-outward, inward-inward, the left elbow first;
         the two angles are those of the left and the right servo: A1, A2, or A4, A3. NaN where out of reach.
@@ -186,7 +195,7 @@ class Model:
         return self._robot.inverse(end == "head", rows).reshape(*shape, 4, 2)
 
     def reasons(self, angles: ArrayLike) -> list[str]:
-        """Sentences for what keeps the robot from a pose (4,), deg; none if it is safe."""
+        """The reasons why a pose (4,), deg, is not safe, as sentences; none if it is safe."""
         poses, shape = _rows(angles, 4)
         if shape != ():
             raise ValueError(f"one pose has four angles; these are {shape} poses")
@@ -200,26 +209,27 @@ class Model:
     def jacobians(self, angles: ArrayLike) -> tuple[Array, Array]:
         """Derivatives K and K* of the eight loop equations, mm per radian, for servo angles (..., 4), deg.
 
-        K (..., 8, 4) is by theta1, theta4, theta8, theta5; K* (..., 8, 8) by theta2, theta3, theta6, theta7, and
-        direction and travel (mm per mm) of the left and of the right slider. K da + K* dp = 0.
+        The columns of K (..., 8, 4) belong to theta1, theta4, theta8, theta5; those of K* (..., 8, 8) to theta2,
+        theta3, theta6, theta7, and to direction and travel (mm per mm) of the left and of the right slider.
+        K da + K* dp = 0.
         """
         poses, shape = _rows(angles, 4)
-        made = self._robot.matrices(poses)
-        active, passive = made[:, :32], made[:, 32:]
+        rows = self._robot.matrices(poses)
+        active, passive = rows[:, :32], rows[:, 32:]
         return active.reshape(*shape, 8, 4), passive.reshape(*shape, 8, 8)
 
     def mobility(self, angles: ArrayLike) -> Mobility:
         """Degrees of freedom of the body for servo angles (..., 4), deg; -1 where a loop does not close."""
         active, passive = self.jacobians(angles)
         closes = np.asarray(np.isfinite(passive).all(axis=(-2, -1)))
-        # Comparable with a sine: a pose typed with seven digits is singular.
+        # Scaled to be comparable with a sine, so that a singular pose that is typed with seven digits is singular.
         scale = np.array([50.0, 50, 50, 50, 50, 1, 50, 1])
         passive = np.where(closes[..., None, None], passive, 0) / scale
         active = np.where(closes[..., None, None], active, 0) / 50
-        both = np.concatenate([active, passive], axis=-1)
+        combined = np.concatenate([active, passive], axis=-1)
         freedoms, loose = (
             count - np.linalg.matrix_rank(matrix, rtol=1e-7)
-            for count, matrix in [(12, both), (8, passive)]
+            for count, matrix in [(12, combined), (8, passive)]
         )
         return Mobility(np.where(closes, freedoms, -1), np.where(closes, loose, -1))
 
@@ -232,16 +242,17 @@ class Model:
         return self._robot.image(only_robot)
 
     def mjcf(self, *, shapes: bool = True) -> str:
-        """The model for MuJoCo, as `lizard model` writes it to an .xml file; without shapes it is a fiftieth as long."""
+        """The model for MuJoCo, as `lizard model` writes it to an .xml file. Without shapes, it is much shorter."""
         return self._robot.mjcf(shapes)
 
 
 def default_toml() -> str:
-    """Text of the project's robot.toml, to be changed."""
+    """Text of the project's robot.toml, as a start for one's own."""
     return _lizard.DEFAULT
 
 
 def _rows(values: ArrayLike, width: int) -> tuple[Array, tuple[int, ...]]:
+    """Flattens an array (..., width) to rows (n, width); returns the rows, and the shape without the last axis."""
     array = np.asarray(values, np.float64)
     if array.ndim == 0 or array.shape[-1] != width:
         raise ValueError(f"the last axis must have {width} numbers, not {array.shape}")

@@ -1,4 +1,4 @@
-"""A board to drive, over a serial port or simulated: the words are those of docs/console.md."""
+"""A board to drive, over a serial port or simulated, by the commands of docs/console.md."""
 
 from __future__ import annotations
 
@@ -16,34 +16,34 @@ from lizard.status import angles as read_angles
 
 BAUD = 115_200
 BANNER = "# lizard "
-GREETING = 3.0
-"""Seconds for the banner after the port is opened, of which a UNO's boot loader takes more than one."""
-ASKS = 8
-"""Lines `status` to a board that sends no banner: it finds the rate by five, and a radio may lose some."""
-ANSWER = 2.0
-"""Seconds for an answer; `save` takes a third of one."""
-INSISTING = 5.0
-"""Seconds for which a line that may be sent twice is sent to a robot that does not answer."""
-NO_PULSES = (7, 10)
-"""Codes of `stop` that is refused: the servos rest, or the flash has no robot."""
-STANDING = 1.0
-"""Seconds after which a robot that does not move has not reached its pose."""
-ROUNDING = 0.02
-"""Difference, deg, of a pose that was sent and one that `status` prints, for which the core rounds."""
-DRIVEN = 901
-"""`deadman` while a program drives, ms: no person sets this number, so one that is found was left behind."""
+BANNER_TIMEOUT = 3.0
+"""Time for the banner after the port is opened, s; a UNO's boot loader takes more than 1 s of it."""
+STATUS_TRIES = 8
+"""Number of `status` lines to a board without a banner: it finds the baud rate by five, and a radio may lose some."""
+ANSWER_TIMEOUT = 2.0
+"""Time for an answer, s; `save` takes a third of a second."""
+RETRY_TIME = 5.0
+"""Time for which a line that may be sent twice is repeated to a robot that does not answer, s."""
+NO_PULSES_CODES = (7, 10)
+"""Codes with which `stop` is refused: the servos rest, or the flash has no robot."""
+STALL_TIME = 1.0
+"""Time after which a robot that does not move counts as stopped before its pose, s."""
+POSE_TOLERANCE = 0.02
+"""Largest difference between a commanded angle and that of `status`, which the core rounds, deg."""
+DRIVING_DEADMAN = 901
+"""`deadman` while a program drives, ms. Nobody sets this number by hand: if it is found, a program left it behind."""
 
 
 class NoAnswer(RobotError):
-    """The robot has not answered in time."""
+    """The robot did not answer in time."""
 
 
 class Robot:
-    """A robot at a serial port: a board's, or a radio module's.
+    """A robot at a serial port, which is that of a board or of a radio module.
 
-    Opening the port of a UNO resets it. A `with` block stops the robot at its end. While a gait goes, `deadman` is
-    set, and a thread keeps the robot going: if this program ends or the link breaks, the robot stops by itself
-    within a second.
+    Opening the port of a UNO resets the board. A `with` block stops the robot at its end. While a gait runs,
+    `deadman` is set, and a thread keeps the robot moving: if this program ends or the link breaks, the robot stops by
+    itself within a second.
     """
 
     def __init__(self, port: str, *, baud: int = BAUD) -> None:
@@ -55,42 +55,44 @@ class Robot:
 
     @classmethod
     def simulated(cls, model: Model | None = None) -> Robot:
-        """A robot on a simulated board, in real time: the firmware's own code, without a chip and its pulses."""
+        """Creates a robot on a simulated board in real time: the firmware's own code, without a chip and its pulses."""
         robot = cls.__new__(cls)
         robot._start(SimulatedPort((model or Model.default())._robot))
         return robot
 
     def _start(self, port: Port) -> None:
         self._port = port
-        self._turn = threading.RLock()  # for a line and its answer
-        self._news = threading.Condition()  # guards what the listening thread changes
+        # Held from a line to its answer.
+        self._exchange = threading.RLock()
+        # Guards the fields that the listener changes.
+        self._condition = threading.Condition()
         self._answers: list[str] = []
         self._notes: list[str] = []
         self._watchers: list[SimpleQueue[Frame]] = []
-        self._ended: str | None = (
-            ""  # None while a gait goes, then the reason of an early end
-        )
-        self._gone: OSError | None = None
-        self._is_up = False
-        self._own: int | None = None  # the robot's own deadman, ms
-        self._driven: int | None = None  # the deadman while this program drives, ms
+        # None while a gait runs; afterwards the reason for an early end, or "".
+        self._end_reason: str | None = ""
+        self._port_error: OSError | None = None
+        self._has_banner = False
+        # `deadman` before and while this program drives the robot, ms.
+        self._own_deadman: int | None = None
+        self._driving_deadman: int | None = None
         self._closing = threading.Event()
         self._listener = threading.Thread(target=self._listen, daemon=True)
-        self._keeper = threading.Thread(target=self._keep_going, daemon=True)
+        self._keeper = threading.Thread(target=self._send_keep_alives, daemon=True)
         self._listener.start()
         try:
-            self._greet()
+            self._wait_for_robot()
         except BaseException:
-            self._shut()
+            self._shut_down()
             raise
         self._keeper.start()
 
-    def _greet(self) -> None:
-        if self._wait(lambda: self._is_up, GREETING):
+    def _wait_for_robot(self) -> None:
+        if self._wait(lambda: self._has_banner, BANNER_TIMEOUT):
             return
-        for _ in range(ASKS):
+        for _ in range(STATUS_TRIES):
             try:
-                self._ask("status", ANSWER / 4)
+                self._ask("status", ANSWER_TIMEOUT / 4)
                 return
             except RobotError:
                 continue
@@ -106,16 +108,16 @@ class Robot:
         self.close()
 
     def close(self) -> None:
-        """Stops the robot, gives it its own `deadman` back, and closes the port."""
+        """Stops the robot, restores its own `deadman`, and closes the port."""
         try:
-            if not self._closing.is_set() and self._gone is None:
+            if not self._closing.is_set() and self._port_error is None:
                 self.stop()
         except (RobotError, OSError):
-            pass  # It rests, or is out of reach and stops by itself.
+            pass  # The robot rests, or is out of range and stops by itself.
         finally:
-            self._shut()
+            self._shut_down()
 
-    def _shut(self) -> None:
+    def _shut_down(self) -> None:
         self._closing.set()
         for thread in (self._listener, self._keeper):
             if thread.is_alive():
@@ -123,67 +125,67 @@ class Robot:
         self._port.close()
 
     def go(self, name: str, cycles: int | None = None) -> None:
-        """Starts a gait or a routine by its name; with a number of cycles, waits until they are done."""
+        """Starts a gait or a routine by its name; with a number of cycles, waits until they are completed."""
         line = name.replace("-", " ")
         if cycles is not None:
             line += f" {cycles}"
-        with self._turn:
+        with self._exchange:
             self._set_deadman()
-            self._ended = None
+            self._end_reason = None
             try:
                 self.ask(line)
             except NoAnswer:
-                self._ended = ""  # If it goes, `deadman` stops it.
+                self._end_reason = ""  # If the gait runs, `deadman` stops it.
                 raise
             except RobotError:
-                self._ended = ""
+                self._end_reason = ""
                 self._restore_deadman()
                 raise
         if cycles is not None:
             self.wait()
 
     def walk(self, cycles: int | None = None) -> None:
-        """Starts to walk; with a number of cycles, waits until they are done."""
+        """Starts to walk; with a number of cycles, waits until they are completed."""
         self.go("walk", cycles)
 
     def wait(self, timeout: float | None = None) -> None:
         """Waits for the end of counted cycles, or of a routine.
 
-        Raises TimeoutError after so many seconds, RobotError if the robot stops for another reason.
+        Raises TimeoutError after `timeout` seconds, RobotError if the robot stops for another reason.
         """
-        if not self._wait(lambda: self._ended is not None, timeout):
+        if not self._wait(lambda: self._end_reason is not None, timeout):
             raise TimeoutError(f"the robot still goes after {timeout} s")
         self._restore_deadman()
-        if self._ended:
-            raise RobotError(self._ended)
+        if self._end_reason:
+            raise RobotError(self._end_reason)
 
     @property
     def is_going(self) -> bool:
-        """True while a gait or a routine goes."""
-        return self._ended is None
+        """True while a gait or a routine runs."""
+        return self._end_reason is None
 
     def stop(self) -> None:
-        """Freezes the robot in the next frame. The line is sent until the robot answers it, for five seconds.
+        """Freezes the robot in the next frame. The line is repeated until the robot answers, for five seconds.
 
-        Nothing happens if it has no pulses.
+        A robot without pulses ignores it.
         """
-        if not self._turn.acquire(blocking=False):
-            self._write("stop")  # ahead of the line that waits for its answer
-            self._turn.acquire()
+        if not self._exchange.acquire(blocking=False):
+            self._write("stop")  # overtakes the line that waits for its answer
+            self._exchange.acquire()
         try:
             self._end_gait("stop")
         except RobotError as error:
-            if error.code not in NO_PULSES:
+            if error.code not in NO_PULSES_CODES:
                 raise
         finally:
-            self._turn.release()
+            self._exchange.release()
 
     def rest(self) -> None:
         """Ends the pulses: the servos go limp. `stand` wakes them."""
         self._end_gait("rest")
 
     def stand(self) -> None:
-        """Goes to the neutral pose, and wakes the servos after `rest`."""
+        """Moves to the neutral pose, and wakes the servos after `rest`."""
         self._end_gait("stand")
 
     def speed(self, percent: int) -> None:
@@ -191,37 +193,40 @@ class Robot:
         self.ask(f"speed {percent}")
 
     def pose(self, *angles: float) -> tuple[float, ...]:
-        """Returns the servo angles, deg; with four angles, goes there first and waits until they are reached.
+        """Returns the servo angles, deg; with four angles, moves to them first and waits until they are reached.
 
-        Raises RobotError if the pose is refused, or the robot stops on the way.
+        Raises RobotError if the pose is refused, or if the robot stops on the way.
         """
         if angles:
             self._end_gait("pose " + " ".join(f"{angle:.2f}" for angle in angles))
-            self._reach(angles)
+            self._wait_for_pose(angles)
         return self.status().pose
 
-    def _reach(self, angles: tuple[float, ...]) -> None:
+    def _wait_for_pose(self, angles: tuple[float, ...]) -> None:
         pose: tuple[float, ...] = ()
-        moved = time.monotonic()
+        last_movement_time = time.monotonic()
         while True:
             status = self.status()
-            off = (math.remainder(a - b, 360) for a, b in zip(status.pose, angles))
-            if all(abs(angle) < ROUNDING for angle in off):
+            errors = (
+                math.remainder(actual - target, 360)
+                for actual, target in zip(status.pose, angles)
+            )
+            if all(abs(error) < POSE_TOLERANCE for error in errors):
                 return
             now = time.monotonic()
             if status.pose != pose:
-                pose, moved = status.pose, now
-            elif status.gait != "pose" or now - moved > STANDING:
-                why = f"guard {status.guard}, fault {status.fault}"
-                raise RobotError(f"the robot has stopped before the pose: {why}")
+                pose, last_movement_time = status.pose, now
+            elif status.gait != "pose" or now - last_movement_time > STALL_TIME:
+                reason = f"guard {status.guard}, fault {status.fault}"
+                raise RobotError(f"the robot has stopped before the pose: {reason}")
             time.sleep(FRAME)
 
     def status(self) -> Status:
-        """Asks for the robot's state."""
-        return Status.parse(self._insist("status")[-1])
+        """Asks the robot for its state."""
+        return Status.parse(self._ask_until_answered("status")[-1])
 
     def watch(self, every: int = 1) -> Iterator[Frame]:
-        """Yields the pose of every so many frames of 20 ms, until the loop over it ends."""
+        """Yields the pose of every n-th frame of 20 ms (n is `every`), until the loop over the poses ends."""
         if every < 1:
             raise ValueError(f"every so many frames: at least 1, not {every}")
         frames: SimpleQueue[Frame] = SimpleQueue()
@@ -230,37 +235,37 @@ class Robot:
             self.ask(f"watch {every}")
             while True:
                 try:
-                    frame = frames.get(timeout=every * FRAME + ANSWER)
+                    frame = frames.get(timeout=every * FRAME + ANSWER_TIMEOUT)
                 except Empty:
-                    self._check()
+                    self._check_open()
                     raise RobotError("the robot no longer sends its poses") from None
                 yield frame
         finally:
             self._watchers.remove(frames)
-            if self._gone is None and not self._closing.is_set():
-                self._insist("watch 0")
+            if self._port_error is None and not self._closing.is_set():
+                self._ask_until_answered("watch 0")
 
     def ask(self, line: str) -> list[str]:
         """Sends a line of the console; returns the `#` lines before its answer, and the answer.
 
-        Raises RobotError if the robot refuses it. `deadman` is left as it is.
+        Raises RobotError if the robot refuses the line. `deadman` stays as it is.
         """
-        return self._ask(line, ANSWER)
+        return self._ask(line, ANSWER_TIMEOUT)
 
     def _end_gait(self, line: str) -> None:
-        with self._turn:
-            self._insist(line)
-            self._end(f"`{line}` has ended the gait")
+        with self._exchange:
+            self._ask_until_answered(line)
+            self._mark_ended(f"`{line}` has ended the gait")
             self._restore_deadman()
 
-    def _insist(self, line: str) -> list[str]:
-        """Sends a line until it is answered, because a radio may lose it."""
-        end = time.monotonic() + INSISTING
+    def _ask_until_answered(self, line: str) -> list[str]:
+        """Repeats a line until it is answered, because a radio may lose it."""
+        deadline = time.monotonic() + RETRY_TIME
         while True:
             try:
-                return self._ask(line, ANSWER / 2)
+                return self._ask(line, ANSWER_TIMEOUT / 2)
             except NoAnswer:
-                if time.monotonic() >= end:
+                if time.monotonic() >= deadline:
                     raise
 
     def _ask(self, line: str, timeout: float) -> list[str]:
@@ -268,18 +273,22 @@ class Robot:
         if not (line.isascii() and line.isprintable() and line):
             raise ValueError(f"a line of the console is ASCII, not {line!r}")
         word = line.split(" ")[0]
-        ok = "ok gait=" if word == "status" else f"ok {word}"
-        with self._turn:
-            self._check()
-            with self._news:
+        expected = "ok gait=" if word == "status" else f"ok {word}"
+        with self._exchange:
+            self._check_open()
+            with self._condition:
                 self._answers, self._notes = [], []
             self._write(line)
             answer = ""
 
             def has_answer() -> bool:
                 nonlocal answer
-                fits = (text for text in self._answers if text.startswith((ok, "err ")))
-                answer = next(fits, "")
+                matches = (
+                    text
+                    for text in self._answers
+                    if text.startswith((expected, "err "))
+                )
+                answer = next(matches, "")
                 return answer != ""
 
             if not self._wait(has_answer, timeout):
@@ -295,109 +304,117 @@ class Robot:
         try:
             self._port.write(f"{line}\n".encode("ascii"))
         except OSError as error:
-            self._gone = error
-            self._check()
+            self._port_error = error
+            self._check_open()
 
-    def _wait(self, ready: Callable[[], bool], timeout: float | None) -> bool:
-        with self._news:
-            found = self._news.wait_for(
-                lambda: ready() or self._gone is not None, timeout
+    def _wait(self, is_ready: Callable[[], bool], timeout: float | None) -> bool:
+        """Waits until `is_ready` is true; returns False after `timeout` seconds. Raises an error if the port closes."""
+        with self._condition:
+            was_ready = self._condition.wait_for(
+                lambda: is_ready() or self._port_error is not None, timeout
             )
-            self._check()
-            return found
+            self._check_open()
+            return was_ready
 
-    def _check(self) -> None:
-        if self._gone is not None:
+    def _check_open(self) -> None:
+        if self._port_error is not None:
             raise ConnectionError(
                 "the port is gone: the board was unplugged, or its cable is loose"
-            ) from self._gone
+            ) from self._port_error
         if self._closing.is_set():
             raise RobotError("this robot is closed")
 
     def _set_deadman(self) -> None:
-        if self._driven is not None:
+        if self._driving_deadman is not None:
             return
-        if self._own is None:
-            notes = self._insist("cal")
-            own = next(
+        if self._own_deadman is None:
+            notes = self._ask_until_answered("cal")
+            own_deadman = next(
                 int(note.split()[-1]) for note in notes if note.startswith("# deadman ")
             )
-            self._own = 0 if own == DRIVEN else own
-        driven = min(self._own or DRIVEN, DRIVEN)
-        self._insist(f"deadman {driven}")
-        self._driven = driven
+            self._own_deadman = 0 if own_deadman == DRIVING_DEADMAN else own_deadman
+        driving_deadman = min(self._own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
+        self._ask_until_answered(f"deadman {driving_deadman}")
+        self._driving_deadman = driving_deadman
 
     def _restore_deadman(self) -> None:
-        with self._turn:
-            if self._driven is not None:
-                self._insist(f"deadman {self._own}")
-                self._driven = None
+        with self._exchange:
+            if self._driving_deadman is not None:
+                self._ask_until_answered(f"deadman {self._own_deadman}")
+                self._driving_deadman = None
 
-    def _keep_going(self) -> None:
+    def _send_keep_alives(self) -> None:
         """Sends a line at least every third of `deadman`, as long as this program drives."""
-        turn = 0
-        while not self._closing.wait(min(0.2, (self._driven or DRIVEN) / 4000)):
-            with self._turn:
-                if self._driven is None or self._ended is not None:
+        line_count = 0
+        while not self._closing.wait(
+            min(0.2, (self._driving_deadman or DRIVING_DEADMAN) / 4000)
+        ):
+            with self._exchange:
+                if self._driving_deadman is None or self._end_reason is not None:
                     continue
-                turn += 1
+                line_count += 1
                 try:
-                    if turn % 5:
-                        self._ask(f"deadman {self._driven}", ANSWER / 4)
+                    if line_count % 5:
+                        self._ask(
+                            f"deadman {self._driving_deadman}", ANSWER_TIMEOUT / 4
+                        )
                         continue
-                    # A radio may have lost the line that says the end.
-                    status = Status.parse(self._ask("status", ANSWER / 4)[-1])
+                    # A radio may have lost the line that reports the end.
+                    status = Status.parse(self._ask("status", ANSWER_TIMEOUT / 4)[-1])
                 except RobotError:
                     continue
                 except OSError:
                     return
                 if status.gait in ("pose", "stop", "rest"):
-                    self._end(
+                    self._mark_ended(
                         ""
                         if status.fault == "none"
                         else f"the robot has stopped: {status.fault}"
                     )
 
-    def _end(self, why: str) -> None:
-        with self._news:
-            if self._ended is None:
-                self._ended = why
-            self._news.notify_all()
+    def _mark_ended(self, reason: str) -> None:
+        with self._condition:
+            if self._end_reason is None:
+                self._end_reason = reason
+            self._condition.notify_all()
 
     def _listen(self) -> None:
-        rest = b""
+        unfinished = b""
         while not self._closing.is_set():
             try:
-                rest += self._port.read()
+                unfinished += self._port.read()
             except OSError as error:
-                with self._news:
-                    self._gone = error
-                    self._news.notify_all()
+                with self._condition:
+                    self._port_error = error
+                    self._condition.notify_all()
                 return
-            *lines, rest = rest.split(b"\n")
-            rest = rest[-512:]  # noise may have no end
+            *lines, unfinished = unfinished.split(b"\n")
+            unfinished = unfinished[-512:]  # noise may have no line ending
             for line in lines:
-                self._hear(line.decode("ascii", "replace").strip())
+                self._handle_line(line.decode("ascii", "replace").strip())
 
-    def _hear(self, line: str) -> None:
-        line = line[max(0, line.find(BANNER)) :]  # a reset cuts off the line before
-        with self._news:
+    def _handle_line(self, line: str) -> None:
+        line = line[max(0, line.find(BANNER)) :]  # a reset cuts off the previous line
+        with self._condition:
             if line.startswith("# t="):
                 fields = dict(word.split("=", 1) for word in line[2:].split())
                 frame = Frame(int(fields["t"]) * FRAME, read_angles(fields["pose"]))
                 for watcher in self._watchers:
                     watcher.put(frame)
             elif line.startswith(BANNER):
-                if self._is_up:
-                    self._driven = None  # Its settings are the saved ones again.
-                    self._end("the robot was reset")
-                self._is_up = True
+                if self._has_banner:
+                    # The robot has its saved settings again.
+                    self._driving_deadman = None
+                    self._mark_ended("the robot was reset")
+                self._has_banner = True
             elif line == "# done":
-                self._end("")
+                self._mark_ended("")
             elif line.startswith("# fault: "):
-                self._end(f"the robot has stopped: {line.removeprefix('# fault: ')}")
+                self._mark_ended(
+                    f"the robot has stopped: {line.removeprefix('# fault: ')}"
+                )
             elif line.startswith("#"):
                 self._notes.append(line)
             elif line:
                 self._answers.append(line)
-            self._news.notify_all()
+            self._condition.notify_all()

@@ -1,4 +1,4 @@
-"""A robot for ROS: the joints of its URDF, and gaits for a wanted velocity. Nothing here needs ROS itself."""
+"""A robot for ROS: the joints of its URDF, and gaits for a commanded velocity. Nothing here needs ROS itself."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ JOINTS = (
     *(f"coupler_{servo}_joint" for servo in ("A1", "A2", "A3", "A4")),
     *("sleeve_left_joint", "sleeve_right_joint", "rod_left_joint", "rod_right_joint"),
 )
-"""The joints of `lizard model robot.urdf` that follow no other, in the order of `joint_values`."""
+"""The joints of `lizard model robot.urdf` that do not mimic another joint, in the order of `joint_values`."""
 TIMEOUT = 0.5
 """Seconds without a velocity after which the robot stops."""
-REACH = 0.1
-"""Distance, m, as which a radian of turning counts: that from the body's middle to a foot."""
-SLOWEST = 0.1
-"""Least pace of a gait."""
+TURN_LEVER_ARM = 0.1
+"""Distance, m, that a turn of 1 rad counts as: that from the body's centre to a foot."""
+MIN_PACE = 0.1
+"""Smallest pace of a gait, as a share of its full pace."""
 
 
 def joint_values(model: Model, poses: ArrayLike) -> Array:
@@ -53,68 +53,69 @@ class Speed:
 
 
 class Driver:
-    """Drives a robot by velocities, as `cmd_vel` has them: with the gait, and its pace, that come nearest."""
+    """Drives a robot by velocities, such as those of `cmd_vel`, with the gait and the pace that come nearest."""
 
     def __init__(self, robot: Robot, model: Model) -> None:
-        """Takes the gaits of a robot that is driven already, and of its robot.toml."""
+        """Prepares the gaits of the model for a connected robot with the same robot.toml."""
         self._robot = robot
-        self._heard = 0.0
-        self._going: tuple[str, int] | None = None
+        self._last_velocity_time = 0.0
+        self._current: tuple[str, int] | None = None  # gait and pace, percent
         gaits = [model.gait(name) for name in model.gaits]
-        ways = [(gait, gait.predict(with_servos=True)) for gait in gaits]
+        travels = [(gait, gait.predict(with_servos=True)) for gait in gaits]
         self.speeds = [
             Speed(
                 gait.name,
-                way.forward / 1000 / gait.period,
-                np.radians(way.turn) / gait.period,
+                travel.forward / 1000 / gait.period,
+                np.radians(travel.turn) / gait.period,
             )
-            for gait, way in ways
-            if np.isfinite([way.forward, way.turn]).all()
+            for gait, travel in travels
+            if np.isfinite([travel.forward, travel.turn]).all()
         ]
 
     def choose(self, forward: float, turn: float) -> tuple[str, int] | None:
-        """Finds the gait and its pace, percent, for a velocity in m/s and rad/s; None if standing comes nearer."""
-        wanted = np.array([forward, REACH * turn])
-        chosen, least = None, float(wanted @ wanted)
+        """Finds the gait and its pace, percent, for a velocity in m/s and rad/s; None if standing still is nearer."""
+        target = np.array([forward, TURN_LEVER_ARM * turn])
+        nearest, min_square = None, float(target @ target)
         for speed in self.speeds:
-            full = np.array([speed.forward, REACH * speed.turn])
+            full = np.array([speed.forward, TURN_LEVER_ARM * speed.turn])
             if (square := full @ full) == 0:
                 continue
-            pace = np.clip(wanted @ full / square, SLOWEST, 1)
-            off = wanted - pace * full
-            if off @ off < least:
-                chosen, least = (speed.gait, round(100 * pace)), float(off @ off)
-        return chosen
+            pace = np.clip(target @ full / square, MIN_PACE, 1)
+            error = target - pace * full
+            if error @ error < min_square:
+                nearest = (speed.gait, round(100 * pace))
+                min_square = float(error @ error)
+        return nearest
 
     def drive(self, forward: float, turn: float) -> None:
-        """Takes a velocity in m/s and rad/s; `stop_if_silent` has to follow several times a second.
+        """Drives at a velocity in m/s and rad/s; call `stop_if_silent` several times a second from then on.
 
         Raises RobotError if the robot refuses, or has stopped by itself; the next velocity starts it again.
         """
-        self._heard = time.monotonic()
-        if self._going and not self._robot.is_going:
-            self._going = None
+        self._last_velocity_time = time.monotonic()
+        if self._current and not self._robot.is_going:
+            self._current = None
             self._robot.wait(0)  # raises the reason
-        wanted, going = self.choose(forward, turn), self._going
-        if wanted == going:
+        target, current = self.choose(forward, turn), self._current
+        if target == current:
             return
-        if wanted is None:
+        if target is None:
             self.stop()
             return
-        gait, pace = wanted
+        gait, pace = target
         self._robot.speed(pace)
-        if going is None or going[0] != gait:
-            self._going = None
+        if current is None or current[0] != gait:
+            self._current = None
             self._robot.go(gait)
-        self._going = wanted
+        self._current = target
 
     def stop_if_silent(self) -> None:
-        """Stops the robot if no velocity has come for `TIMEOUT`."""
-        if self._going and time.monotonic() - self._heard > TIMEOUT:
+        """Stops the robot if no velocity has arrived for `TIMEOUT`."""
+        if self._current and time.monotonic() - self._last_velocity_time > TIMEOUT:
             self.stop()
 
     def stop(self) -> None:
-        """Stops the robot, and gives its gaits their full pace back for whoever drives it next."""
-        self._going = None
+        """Stops the robot, and restores the full pace of its gaits for whoever drives it next."""
+        self._current = None
         self._robot.stop()
         self._robot.speed(100)

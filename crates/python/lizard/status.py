@@ -10,11 +10,11 @@ class RobotError(RuntimeError):
     """The robot refuses a line, stops by itself, was reset, or does not answer."""
 
     code: int | None = None
-    """Code of a refusal, as docs/console.md lists them."""
+    """Code of a refusal, from the list in docs/console.md."""
 
 
 class Frame(NamedTuple):
-    """A pose that the servos are sent to, and its time."""
+    """The pose that the servos are sent in a frame, and the time of the frame."""
 
     time: float
     """Seconds since the robot's start."""
@@ -27,13 +27,13 @@ class Status:
     """The robot's answer to `status`; a field that it does not send is NaN, 0 or empty."""
 
     gait: str
-    """A routine or gait, with dashes; `pose`, `stop` or `rest`."""
+    """A routine or gait, with hyphens in its name; otherwise `pose`, `stop` or `rest`."""
     fault: str
-    """`none`, or the reason for which the robot has stopped by itself."""
+    """`none`, or the reason why the robot has stopped by itself."""
     guard: str
     """`clear`, or `held` if the guard has stopped a move."""
     reset: str
-    """Cause of the last start."""
+    """Cause of the last reset."""
     pose: tuple[float, ...]
     """Servo angles, deg."""
     margin: float
@@ -41,23 +41,23 @@ class Status:
     phase: float
     """Phase of the gait, 0 to 1."""
     vcc: float
-    """Supply of the board, V."""
+    """Supply voltage of the board, V."""
     rail: float
-    """Supply of the servos, V."""
+    """Supply voltage of the servos, V."""
     speed: int
-    """Percent of a gait's pace."""
+    """Pace of gaits, percent."""
     frames: int
-    """Frames of 20 ms since the start."""
+    """Number of frames of 20 ms since the robot's start."""
     late: int
-    """Pulses' edges that came late."""
+    """Number of pulse edges that were late."""
     rx_lost: int
-    """Bytes that were lost."""
+    """Number of received bytes that were lost."""
     resets: int
-    """Resets since power-on."""
+    """Number of resets since power-on."""
 
     @staticmethod
     def parse(answer: str) -> Status:
-        """Reads `ok gait=...`; fields that this version does not know are skipped."""
+        """Parses `ok gait=...`; fields that this version does not know are skipped."""
         fields = dict(word.split("=", 1) for word in answer.split() if "=" in word)
 
         def number(name: str) -> float:
@@ -85,5 +85,5 @@ class Status:
 
 
 def angles(text: str) -> tuple[float, ...]:
-    """Reads the angles of `pose=`."""
+    """Parses the angles of `pose=`, deg."""
     return tuple(float(angle) for angle in text.split(",") if angle)

@@ -1,4 +1,4 @@
-"""The package for colcon."""
+"""The ROS package `lizard_ros`, for colcon."""
 
 from setuptools import setup
 

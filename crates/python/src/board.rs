@@ -14,15 +14,15 @@ pub struct Board(Mutex<RunningRobot>);
 
 #[pymethods]
 impl Board {
-    /// Returns a board with this robot just after power-on.
+    /// Creates a board with this robot, just after power-on.
     #[new]
     fn new(robot: &Robot) -> Self {
         Self(Mutex::new(RunningRobot::power_on(*robot.0.firmware())))
     }
 
-    /// Sends these bytes to the robot, runs one frame, and returns the text that the robot has sent.
+    /// Sends these bytes to the robot, runs one frame, and returns the text that the robot sent.
     fn frame(&self, bytes: &[u8]) -> String {
-        // The firmware gets them one by one, as from a serial line.
+        // The firmware receives the bytes one by one, as from a serial line.
         let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         for byte in bytes {
             running.board.send(&[*byte]);

@@ -36,7 +36,7 @@ mod _lizard {
 
 /// Runs the program `lizard` with these arguments, and returns its exit code.
 #[pyfunction]
-fn program(py: Python<'_>, words: Vec<String>) -> u8 {
-    let words = words.into_iter().map(Into::into).collect();
-    py.detach(|| lizard_host::commands::run_and_report(words))
+fn program(py: Python<'_>, arguments: Vec<String>) -> u8 {
+    let arguments = arguments.into_iter().map(Into::into).collect();
+    py.detach(|| lizard_host::commands::run_and_report(arguments))
 }

@@ -16,8 +16,8 @@ pyo3::create_exception!(
     "A mistake in a robot.toml, with its `file`, `line` (None if it belongs to none) and `key`."
 );
 
-/// Number of columns in the result of [`Robot::solve`]: head point, tail point, coupler angles, slider directions, slider travels,
-/// margins, and 1 if the pose is safe.
+/// Number of columns in the result of [`Robot::solve`]: head point, tail point, coupler angles, slider directions,
+/// slider travels, margins, and 1 if the pose is safe.
 const COLUMN_COUNT: usize = 2 + 2 + 4 + 2 + 2 + 10 + 1;
 
 /// A robot whose every value and gait has been checked.
@@ -61,7 +61,7 @@ impl Robot {
         self.0.servos().map(|servo| servo.travel())
     }
 
-    /// The greatest speed of a servo that a gait may use, deg/s.
+    /// The largest servo speed that a gait may use, deg/s.
     fn gait_slew(&self) -> f64 {
         self.0.speed_limits().gait_slew
     }
@@ -72,8 +72,8 @@ impl Robot {
         compute_rows(py, &poses, |angles| self.solution_row(angles))
     }
 
-    /// The matrices K (8 x 4) and K* (8 x 8) of poses: a row has first the numbers of K, row by row, then those of K*;
-    /// NaN if there is no solution.
+    /// The matrices K (8 x 4) and K* (8 x 8) of poses: a row has the elements of K, row by row, and then those of K*; NaN
+    /// if there is no solution.
     fn matrices<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
         compute_rows(py, &poses, |angles: [f64; 4]| {
             let mut row = [f64::NAN; 96];
@@ -133,7 +133,7 @@ impl Robot {
         self.0.gaits().iter().map(CheckedGait::name).collect()
     }
 
-    /// A gait's period (s), its peak servo speed (deg/s), the name and value of its least margin, and
+    /// A gait's period (s), its peak servo speed (deg/s), the name and value of its smallest margin, and
     /// the times (s) and servo angles (deg) of the frames of a cycle.
     #[expect(
         clippy::type_complexity,
@@ -157,22 +157,22 @@ impl Robot {
             .unzip();
         let audit = gait.audit();
         let margins = [audit.type2, audit.type1, audit.leg];
-        let least_margin = margins
+        let min_margin = margins
             .into_iter()
-            .reduce(|least_margin, next_margin| {
-                if next_margin.value < least_margin.value {
-                    next_margin
+            .reduce(|smallest, next| {
+                if next.value < smallest.value {
+                    next
                 } else {
-                    least_margin
+                    smallest
                 }
             })
-            .map_or(("", f64::NAN), |least_margin| {
-                (Check::name(least_margin.check), least_margin.value)
+            .map_or(("", f64::NAN), |margin| {
+                (Check::name(margin.check), margin.value)
             });
         Ok((
             gait.period(),
             audit.peak_speed.speed,
-            least_margin,
+            min_margin,
             PyArray1::from_vec(py, times),
             PyArray2::from_vec2(py, &angles)?,
         ))
@@ -214,7 +214,7 @@ impl Robot {
         image.map(|image| image.to_hex()).map_err(to_value_error)
     }
 
-    /// The model for MuJoCo; without the parts' shapes it is a fiftieth as long.
+    /// The model for MuJoCo as MJCF. Without the parts' shapes, it is a fiftieth as long.
     fn mjcf(&self, py: Python<'_>, shapes: bool) -> PyResult<String> {
         py.detach(|| {
             let assembly = Assembly::new(&self.0);
@@ -303,11 +303,11 @@ fn wrap_robot(py: Python<'_>, robot: Result<lizard_robot::Robot, Error>) -> PyRe
     robot.map(Robot).map_err(|error| {
         let python_error = RobotFileError::new_err(error.to_string());
         let exception = python_error.value(py);
-        let outcome = exception
+        let result = exception
             .setattr("file", &error.file)
             .and_then(|()| exception.setattr("line", error.line))
             .and_then(|()| exception.setattr("key", &error.key));
-        outcome.err().unwrap_or(python_error)
+        result.err().unwrap_or(python_error)
     })
 }
 

@@ -1,4 +1,4 @@
-"""Fixtures of all tests: the default robot, and the program of the wheel."""
+"""Fixtures of all tests: the default robot, and the wheel's program `lizard`."""
 
 import subprocess
 import sys
@@ -19,13 +19,12 @@ def model() -> lizard.Model:
 
 @pytest.fixture(scope="session")
 def program() -> Program:
-    """Runs `lizard`, with these words and this standard input."""
+    """Returns a function that runs `lizard` with arguments and a text as standard input."""
     path = Path(sys.executable).parent / "lizard"
 
-    def run(*words: object, text: str = "") -> subprocess.CompletedProcess[str]:
-        words = (path, *words)
+    def run(*arguments: object, text: str = "") -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [str(word) for word in words],
+            [str(word) for word in (path, *arguments)],
             check=False,
             input=text,
             capture_output=True,

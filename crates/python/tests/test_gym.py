@@ -1,4 +1,4 @@
-"""The environment: Gymnasium's own check, and ways as with the engine's finest step."""
+"""Tests of the environment: Gymnasium's own check, and distances as with the engine's smallest time step."""
 
 import importlib.util
 import warnings
@@ -10,7 +10,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import lizard
-from lizard.gym import REACH, LizardEnv
+from lizard.gym import MAX_SWEEP, LizardEnv
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "learn_gait.py"
 SPEC = importlib.util.spec_from_file_location("learn_gait", EXAMPLE)
@@ -18,11 +18,11 @@ assert SPEC is not None and SPEC.loader is not None
 learn_gait = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(learn_gait)
 
-# A cycle with a step of 0.2 ms, as the file of `lizard model` has it: docs/judges.md.
-WAYS = {"walk": (34.1, 0.0), "trot": (26.4, 0.0), "left": (0.0, 14.9)}
+# Movement per cycle with a time step of 0.2 ms, that of the file of `lizard model`: forward, mm, and turn, deg.
+MOVEMENTS = {"walk": (34.1, 0.0), "trot": (26.4, 0.0), "left": (0.0, 14.9)}
 
 
-def test_gymnasium_finds_and_accepts_it():
+def test_gymnasium_finds_and_accepts_the_environment():
     env = gymnasium.make("lizard.gym:Lizard-v0")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -31,7 +31,7 @@ def test_gymnasium_finds_and_accepts_it():
     assert env.spec is not None and env.spec.max_episode_steps == 250
 
 
-def test_a_seed_decides_everything():
+def test_the_seed_determines_the_rewards():
     env = LizardEnv()
 
     def drive(seed: int) -> list[float]:
@@ -40,41 +40,41 @@ def test_a_seed_decides_everything():
         actions = random.uniform(-1, 1, (30, 4)).astype(np.float32)
         return [float(env.step(action)[1]) for action in actions]
 
-    first, other = drive(1), drive(2)
-    assert first == drive(1) != other
+    first, second = drive(1), drive(2)
+    assert first == drive(1) != second
 
 
-@pytest.mark.parametrize("name", WAYS)
-def test_gaits_go_as_far_as_with_the_finest_step(model, name):
+@pytest.mark.parametrize("name", MOVEMENTS)
+def test_gaits_move_the_robot_as_far_as_with_the_smallest_time_step(model, name):
     env = LizardEnv(friction_spread=0)
     gait = model.gait(name)
     sweeps = (gait.angles[:-1] - model.neutral + 180) % 360 - 180
-    actions = (sweeps / REACH).astype(np.float32)
+    actions = (sweeps / MAX_SWEEP).astype(np.float32)
     env.reset(seed=0)
-    places = [env.step(actions[0])[4] for _ in range(20)]
-    places += [env.step(action)[4] for _ in range(2) for action in actions]
-    before, after = places[-1 - len(actions)], places[-1]
-    forward, turn = WAYS[name]
+    infos = [env.step(actions[0])[4] for _ in range(20)]
+    infos += [env.step(action)[4] for _ in range(2) for action in actions]
+    before, after = infos[-1 - len(actions)], infos[-1]
+    forward, turn = MOVEMENTS[name]
     assert after["forward"] - before["forward"] == pytest.approx(forward, abs=0.7)
     assert after["turn"] - before["turn"] == pytest.approx(turn, abs=0.3)
-    assert not any(place["held"] for place in places)
+    assert not any(info["held"] for info in infos)
 
 
 def test_no_target_is_unsafe_or_faster_than_a_gait_may_be(model):
     env = LizardEnv()
     env.reset(seed=3)
-    random, held, before = np.random.default_rng(3), 0, np.zeros(4)
+    random, held_count, previous = np.random.default_rng(3), 0, np.zeros(4)
     for _ in range(200):
         action = random.choice([-1.0, 1.0], 4).astype(np.float32)
-        held += env.step(action)[4]["held"]
+        held_count += env.step(action)[4]["held"]
         target = np.degrees(env.data.ctrl)
         assert model.solve(model.neutral + target).safe
-        assert np.abs(target - before).max() <= model.gait_slew / 50 + 1e-9
-        before = target
-    assert held > 0
+        assert np.abs(target - previous).max() <= model.gait_slew / 50 + 1e-9
+        previous = target
+    assert held_count > 0
 
 
-def test_a_grain_is_refused():
+def test_a_robot_whose_pads_have_a_grain_is_refused():
     grain = Path(__file__).parents[3] / "robots" / "grain.toml"
     with pytest.raises(ValueError, match="grain"):
         LizardEnv(lizard.Model.from_toml(grain))
@@ -83,8 +83,12 @@ def test_a_grain_is_refused():
 def test_the_example_learns_a_gait_that_the_program_accepts(
     monkeypatch, program, tmp_path
 ):
-    for name, small in [("GENERATIONS", 2), ("FIRST", 16), ("TRIED", 4)]:
-        monkeypatch.setattr(learn_gait, name, small)
+    for name, value in [
+        ("GENERATIONS", 2),
+        ("FIRST_POPULATION", 16),
+        ("POPULATION", 4),
+    ]:
+        monkeypatch.setattr(learn_gait, name, value)
     file = tmp_path / "learned.toml"
     monkeypatch.setattr("sys.argv", ["learn_gait.py", str(file)])
     learn_gait.main()

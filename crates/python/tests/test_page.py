@@ -1,4 +1,4 @@
-"""The examples of docs/python.md and of the README run as they are."""
+"""Tests that the examples of docs/python.md and of the README run as they are."""
 
 import re
 import subprocess
@@ -19,9 +19,11 @@ EXAMPLES = [
 
 @pytest.mark.parametrize(("page", "code"), EXAMPLES)
 def test_an_example_runs(page, code):
-    ran = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
-    assert "print" not in code or ran.stdout
+    result = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True
+    )
+    assert "print" not in code or result.stdout
 
 
-def test_there_are_examples_of_everything():
+def test_all_examples_are_found():
     assert len(EXAMPLES) == 5

@@ -1,6 +1,6 @@
-"""A robot that is driven: the core without a chip, and the firmware on a simulated UNO at a serial port.
+"""Tests of driving a robot: the core without a chip, and the firmware on a simulated UNO at a serial port.
 
-`LIZARD` names the program `lizard` that has the simulator of a UNO.
+The environment variable `LIZARD` is the path of a program `lizard` with the simulator of a UNO.
 """
 
 import os
@@ -22,10 +22,10 @@ def robot() -> Iterator[lizard.Robot]:
         yield robot
 
 
-def serve(link: Path, *options: str) -> subprocess.Popen[bytes]:
+def start_uno(link: Path, *options: str) -> subprocess.Popen[bytes]:
     """Starts a simulated UNO behind a pseudo terminal."""
-    words = [os.environ["LIZARD"], "sim", "--pty", str(link), *options]
-    uno = subprocess.Popen(words, stdout=subprocess.DEVNULL)
+    command = [os.environ["LIZARD"], "sim", "--pty", str(link), *options]
+    uno = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     while not link.exists():
         assert uno.poll() is None
         time.sleep(0.02)
@@ -34,7 +34,7 @@ def serve(link: Path, *options: str) -> subprocess.Popen[bytes]:
 
 @pytest.fixture
 def port(tmp_path: Path) -> Iterator[Path]:
-    uno = serve(tmp_path / "uno")
+    uno = start_uno(tmp_path / "uno")
     yield tmp_path / "uno"
     uno.kill()
     uno.wait()
@@ -44,22 +44,22 @@ def deadman(robot: lizard.Robot) -> int:
     return int(robot.ask("cal")[-2].removeprefix("# deadman "))
 
 
-def test_a_walk_of_some_cycles_takes_their_time_and_ends_where_the_gait_begins(
+def test_a_walk_of_two_cycles_takes_their_time_and_ends_where_the_gait_begins(
     robot, model
 ):
-    begin = robot.status().frames
+    first_frame = robot.status().frames
     robot.walk(cycles=2)
     status = robot.status()
-    seconds = (status.frames - begin) / 50
-    # The robot first goes to the gait's first pose, and brakes at the end.
+    seconds = (status.frames - first_frame) / 50
+    # The robot first moves to the gait's first pose, and slows down at the end.
     assert 2.0 <= seconds < 3.2
     assert (status.gait, status.fault) == ("stop", "none")
-    off = np.array(status.pose) - model.gait("walk").angles[0]
-    assert np.abs(off).max() < 15
+    difference = np.array(status.pose) - model.gait("walk").angles[0]
+    assert np.abs(difference).max() < 15
     assert deadman(robot) == 0
 
 
-def test_deadman_is_set_while_a_gait_goes_and_the_program_keeps_it_going(robot):
+def test_deadman_is_set_while_a_gait_runs_and_the_program_keeps_the_gait_running(robot):
     robot.ask("deadman 700")
     robot.go("arc-left")
     assert deadman(robot) == 700
@@ -69,30 +69,30 @@ def test_deadman_is_set_while_a_gait_goes_and_the_program_keeps_it_going(robot):
     assert deadman(robot) == 700
 
 
-def test_a_program_that_sends_nothing_lets_the_robot_stop(robot):
+def test_the_robot_stops_if_the_program_sends_nothing(robot):
     robot.go("walk")
     robot._closing.set()  # the threads end, as with a program that is killed
     robot._keeper.join()
     robot._listener.join()
-    board, said = robot._port.board, ""
+    board = robot._port.board
     for _ in range(60):
-        said += board.frame(b"")
-    said = board.frame(b"status\n")
-    assert "gait=walk" not in said and "gait=" in said
+        board.frame(b"")
+    answer = board.frame(b"status\n")
+    assert "gait=walk" not in answer and "gait=" in answer
 
 
 def test_poses_are_reached_and_watched(robot, model):
     target = tuple(np.round(model.neutral + [8, -8, 5, 5], 2))
     frames: list[lizard.Frame] = []
 
-    def look() -> None:
+    def watch_until_reached() -> None:
         for frame in robot.watch(2):
             frames.append(frame)
             if frame.pose == reached:
                 return
 
     reached = tuple(float(angle) for angle in target)
-    watcher = threading.Thread(target=look)
+    watcher = threading.Thread(target=watch_until_reached)
     watcher.start()
     arrived = robot.pose(*target)
     np.testing.assert_allclose(arrived, target, atol=0.011)
@@ -103,7 +103,7 @@ def test_poses_are_reached_and_watched(robot, model):
     assert frames[0].pose != arrived and frames[-1].pose == arrived
 
 
-def test_refusals_are_the_robots_own_words(robot):
+def test_a_refusal_has_the_robots_own_message_and_code(robot):
     with pytest.raises(lizard.RobotError, match="A1 reaches") as error:
         robot.pose(0, 0, 0, 0)
     assert error.value.code == 3
@@ -112,9 +112,9 @@ def test_refusals_are_the_robots_own_words(robot):
     assert deadman(robot) == 0
     robot.rest()
     robot.stop()
-    for wrong in ("walk\nstop", "", "st\u00e4nd"):
+    for line in ("walk\nstop", "", "st\u00e4nd"):
         with pytest.raises(ValueError, match="ASCII"):
-            robot.ask(wrong)
+            robot.ask(line)
     with pytest.raises(lizard.RobotError, match="resting") as error:
         robot.walk()
     assert error.value.code == 7
@@ -122,7 +122,7 @@ def test_refusals_are_the_robots_own_words(robot):
     assert robot.status().gait == "stand"
 
 
-def test_a_reset_while_driven_is_told_and_the_robot_can_be_driven_again(robot):
+def test_a_reset_during_a_walk_is_reported_and_the_robot_can_walk_again(robot):
     robot.walk()
     robot._port.board.reset()
     with pytest.raises(lizard.RobotError, match="the robot was reset"):
@@ -134,22 +134,22 @@ def test_a_reset_while_driven_is_told_and_the_robot_can_be_driven_again(robot):
 
 def test_a_stop_from_another_thread_ends_the_wait(robot):
     threading.Timer(0.5, robot.stop).start()
-    begin = time.monotonic()
+    start_time = time.monotonic()
     with pytest.raises(lizard.RobotError, match="`stop` has ended the gait"):
         robot.walk(cycles=20)
-    assert time.monotonic() - begin < 3
+    assert time.monotonic() - start_time < 3
     with pytest.raises(TimeoutError, match="still goes"):
         robot.walk()
         robot.wait(timeout=0.2)
 
 
-def test_a_block_that_fails_leaves_the_robot_stopped():
+def test_a_with_block_that_raises_stops_the_robot():
     with pytest.raises(ZeroDivisionError), lizard.Robot.simulated() as robot:
         robot.walk()
         board = robot._port.board
         _ = 1 / 0
-    said = board.frame(b"status\n")
-    assert "gait=stop" in said
+    answer = board.frame(b"status\n")
+    assert "gait=stop" in answer
     with pytest.raises(lizard.RobotError, match="this robot is closed"):
         robot.walk()
 
@@ -163,7 +163,7 @@ def test_another_robot_has_its_own_gaits_and_routines():
         assert robot.status().gait in ("stand", "stop")
 
 
-def test_the_firmware_at_a_serial_port_is_driven_alike(port):
+def test_the_firmware_at_a_serial_port_is_driven_in_the_same_way(port):
     with lizard.Robot(str(port)) as robot:
         robot.walk(cycles=1)
         assert robot.status().gait == "stop"
@@ -173,8 +173,8 @@ def test_the_firmware_at_a_serial_port_is_driven_alike(port):
         assert robot.status().late == 0
 
 
-def test_a_board_that_is_unplugged_is_gone(tmp_path):
-    uno = serve(tmp_path / "uno")
+def test_unplugging_the_board_raises_a_connection_error(tmp_path):
+    uno = start_uno(tmp_path / "uno")
     with lizard.Robot(str(tmp_path / "uno")) as robot:
         robot.walk()
         uno.kill()
@@ -185,8 +185,8 @@ def test_a_board_that_is_unplugged_is_gone(tmp_path):
             robot.status()
 
 
-def test_a_radio_at_another_rate_is_driven_too(tmp_path):
-    uno = serve(tmp_path / "uno", "--radio", "9600")
+def test_a_robot_behind_a_radio_at_another_baud_rate_can_be_driven(tmp_path):
+    uno = start_uno(tmp_path / "uno", "--radio", "9600")
     try:
         with lizard.Robot(str(tmp_path / "uno")) as robot:
             robot.walk()
@@ -200,8 +200,8 @@ def test_a_radio_at_another_rate_is_driven_too(tmp_path):
 def test_a_port_without_a_lizard_is_refused(tmp_path):
     with pytest.raises(OSError, match="no-port"):
         lizard.Robot(str(tmp_path / "no-port"))
-    master, other = os.openpty()
+    controller, terminal = os.openpty()
     with pytest.raises(lizard.RobotError, match="nothing answers"):
-        lizard.Robot(os.ttyname(other))
-    os.close(master)
-    os.close(other)
+        lizard.Robot(os.ttyname(terminal))
+    os.close(controller)
+    os.close(terminal)

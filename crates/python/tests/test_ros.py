@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import lizard
-from lizard.ros import JOINTS, REACH, TIMEOUT, Driver, joint_values
+from lizard.ros import JOINTS, TIMEOUT, TURN_LEVER_ARM, Driver, joint_values
 
 NODE = Path(__file__).parents[1] / "ros"
 ROBOTS = Path(__file__).parents[3] / "robots"
@@ -66,32 +66,32 @@ def robot():
         yield robot
 
 
-def test_the_chosen_gait_and_pace_come_nearest_of_all(robot, model):
+def test_the_chosen_gait_and_pace_come_nearest_to_the_velocity(robot, model):
     driver = Driver(robot, model)
     full_speeds = {
-        speed.gait: (speed.forward, REACH * speed.turn) for speed in driver.speeds
+        speed.gait: (speed.forward, TURN_LEVER_ARM * speed.turn)
+        for speed in driver.speeds
     }
     walk = model.gait("walk")
     assert full_speeds["walk"][0] == pytest.approx(
         walk.predict(with_servos=True).forward / 1000 / walk.period
     )
-    assert (
-        "look" not in full_speeds
-    )  # two feet pull against the other two, so where it goes is uncertain
+    # In `look`, two feet pull against the other two, so its direction is undecided.
+    assert "look" not in full_speeds
     for forward, turn in np.random.default_rng(2).uniform(-1, 1, (200, 2)) * (
         0.06,
         0.5,
     ):
-        wanted = (forward, REACH * turn)
-        least_distance = min(
-            math.dist(wanted, (pace / 100 * x, pace / 100 * y))
+        target = (forward, TURN_LEVER_ARM * turn)
+        min_distance = min(
+            math.dist(target, (pace / 100 * x, pace / 100 * y))
             for x, y in full_speeds.values()
             for pace in (0, *range(10, 101))
         )
         chosen = driver.choose(forward, turn)
         x, y = full_speeds[chosen[0]] if chosen else (0, 0)
         pace = chosen[1] / 100 if chosen else 0
-        assert math.dist(wanted, (pace * x, pace * y)) < least_distance + 1e-4
+        assert math.dist(target, (pace * x, pace * y)) < min_distance + 1e-4
     assert driver.choose(0, 0) is None
     assert driver.choose(1, 0)[1] == 100
     assert driver.choose(0, 0.3)[0] == "left"
@@ -121,7 +121,7 @@ def test_the_robot_walks_while_velocities_arrive(robot, model):
     assert (status.gait, status.speed) == ("stop", 100)
 
 
-def test_a_robot_that_stopped_by_itself_reports_why_once_and_then_walks_again(
+def test_a_robot_that_stopped_by_itself_reports_the_reason_once_and_walks_again(
     robot, model
 ):
     driver = Driver(robot, model)
@@ -138,7 +138,7 @@ def test_a_robot_that_stopped_by_itself_reports_why_once_and_then_walks_again(
 
 
 def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
-    """Uses a stand-in for ROS, which is in no package index."""
+    """Uses a stand-in for `rclpy`, which no package index has."""
     published, published_while_walking, logged, callbacks = [], [], [], {}
 
     class Message(types.SimpleNamespace):
@@ -222,7 +222,7 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
     from lizard_ros.node import main
 
     main()
-    # The poses report the first, the velocity the second; the gait is refused, and so is the pace at shutdown.
+    # `watch` reports the first error, `cmd_vel` the second; the gait is refused, and so is the pace at shutdown.
     assert logged == [
         "the robot no longer sends its poses",
         "the robot was reset",
@@ -242,6 +242,6 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
     assert np.ptp(cranks) > 0.2
 
 
-def test_the_ros_package_has_the_version_of_the_wheel():
+def test_the_ros_package_has_the_same_version_as_the_wheel():
     assert f"<version>{lizard.__version__}<" in (NODE / "package.xml").read_text()
     assert f'version="{lizard.__version__}"' in (NODE / "setup.py").read_text()

@@ -1,4 +1,4 @@
-//! Tests of the twin, such as: the frames of a gait, simulated one by one, move the robot as predicted for the gait.
+//! Tests of the twin: a gait's frames, simulated one by one, move the robot as predicted for the gait.
 
 use lizard_robot::{CheckedGait, Drive, DriveKind, Ground, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin, UnloadedServo};

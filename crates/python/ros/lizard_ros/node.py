@@ -1,4 +1,4 @@
-"""The ROS node: `joint_states` from a robot, `cmd_vel` to it. All that can be wrong without ROS is in `lizard.ros`."""
+"""The ROS node: publishes a robot's `joint_states`, and drives it by `cmd_vel`. The logic is in `lizard.ros`."""
 
 import threading
 from contextlib import closing
@@ -29,7 +29,7 @@ class Lizard(Node):
         threading.Thread(target=self.publish, daemon=True).start()
 
     def publish(self) -> None:
-        """Publishes every so many frames of 20 ms, until the port is gone; a board that was reset is asked again."""
+        """Publishes the joints in every n-th frame (parameter `every`) until the port is gone, also after a reset."""
         while rclpy.ok():
             try:
                 with closing(self.robot.watch(self.every)) as frames:
@@ -49,23 +49,23 @@ class Lizard(Node):
                 rclpy.try_shutdown()
 
     def drive(self, twist: Twist) -> None:
-        """Takes a velocity."""
+        """Drives at a velocity of `cmd_vel`."""
         self.attempt(self.driver.drive, twist.linear.x, twist.angular.z)
 
     def stop_if_silent(self) -> None:
-        """Stops the robot when velocities no longer come."""
+        """Stops the robot when velocities no longer arrive."""
         self.attempt(self.driver.stop_if_silent)
 
-    def attempt(self, act, *values) -> None:
-        """Does what a robot may refuse, and logs its sentence."""
+    def attempt(self, action, *arguments) -> None:
+        """Performs an action that the robot may refuse, and logs the refusal."""
         try:
-            act(*values)
+            action(*arguments)
         except (RobotError, OSError) as error:
             self.get_logger().error(str(error), throttle_duration_sec=1.0)
 
 
 def main() -> None:
-    """Runs the node; the robot stops at its end."""
+    """Runs the node, and stops the robot at the end."""
     rclpy.init()
     node = Lizard()
     try:
