@@ -13,7 +13,7 @@ use crate::Failure;
 use crate::paper::pose_line::{self, PoseLine};
 use crate::paper::poses::{PoseReader, TimedPose};
 
-/// Number of poses that are solved together; it limits the memory.
+/// Number of poses that are solved together, which limits the memory in use.
 const BATCH_SIZE: usize = 8192;
 
 /// Number of poses whose lines form a block.

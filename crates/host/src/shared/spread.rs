@@ -63,8 +63,8 @@ impl From<Part> for String {
 }
 
 impl Part {
-    /// True if the piece with this index belongs to this part. Neighbouring pieces belong to different parts, because slow pieces are
-    /// often neighbours.
+    /// True if the piece with this index belongs to this part. Neighbouring pieces belong to different parts, because
+    /// slow pieces are often neighbours.
     fn has_piece(self, piece: usize) -> bool {
         piece % self.part_count as usize == self.number as usize - 1
     }

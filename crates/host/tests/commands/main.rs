@@ -1,5 +1,5 @@
-//! The commands of `lizard` as a user runs them: the program itself, its exit codes, and the
-//! files and pages that it makes.
+//! Tests of the commands of `lizard` as a user runs them: the program itself, its exit codes, and the files and pages
+//! that it writes.
 
 mod another_robot;
 mod draw;

@@ -1,5 +1,6 @@
-//! Long computations that are split into parts: independent processes compute the parts, and `lizard merge` prints
-//! the output of one process that computes all. `make parallel-test` tests this with GNU parallel and longer commands.
+//! Tests of long computations that are split into parts: independent processes compute the parts, and `lizard merge`
+//! prints the output of one process that computes all. `make parallel-test` tests this with GNU parallel and longer
+//! commands.
 
 use crate::program::{run_line, with_paper};
 

@@ -38,7 +38,7 @@ fn a_stream_gets_the_file_and_nothing_else() {
 }
 
 #[test]
-fn wrong_input_is_refused_with_a_message_and_no_file_is_written() {
+fn invalid_input_is_refused_with_a_message_and_no_file_is_written() {
     let file = unused_path("wrong.xml");
     let path = file.display().to_string();
     let refusal_of =

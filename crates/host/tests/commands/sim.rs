@@ -1,4 +1,4 @@
-//! Tests of `lizard sim` and `lizard draw`: wrong input, inputs of a routine, and the picture in docs/.
+//! Tests of `lizard sim` and `lizard draw`: invalid input, inputs of a routine, and the picture in docs/.
 
 use crate::program::{read_file, robot_path, run, scratch_folder};
 

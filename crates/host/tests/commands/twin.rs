@@ -1,4 +1,4 @@
-//! Tests of `lizard twin`: routines, the speeds stated in docs/gaits.md, and wrong input.
+//! Tests of `lizard twin`: routines, the speeds stated in docs/gaits.md, and invalid input.
 
 use serde_json::Value;
 

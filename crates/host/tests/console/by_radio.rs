@@ -8,7 +8,7 @@ use crate::fixture::{Uno, moving_gait, run};
 fn a_script_by_radio_uses_deadman_so_the_robot_stops_when_the_script_ends() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start_by_radio(folder.path());
-    // The radio loses lines, so the script is repeated until all answers have come.
+    // The radio loses lines, so the script is repeated until all answers have arrived.
     let send_script = |lines: &str, expected: &[&str]| {
         let mut text = String::new();
         LIMIT.expect("all answers to the script", || {

@@ -1,4 +1,4 @@
-//! The choice of a firmware and its robot.
+//! The selection of a firmware and its robot.
 //!
 //! All lizards run the same code; the robot is a section of flash after the code. This program contains the code, so a
 //! user needs only a robot.toml: `lizard flash`, `image`, `sim`, `twin`, `console --sim` and all other commands put
@@ -6,7 +6,7 @@
 //! firmware name their build with `--elf` for a simulation (as `make sim` does), or with `--image` for a board. Only
 //! `lizard sim bench` always needs an ELF, because it finds the timed functions by their names.
 //!
-//! An ELF contains a robot. If this is not the selected robot, the ELF is refused as a mistake of the user.
+//! An ELF contains a robot. If this is not the selected robot, the ELF is refused: the user has made a mistake.
 
 pub use lizard_upload::robot_label;
 

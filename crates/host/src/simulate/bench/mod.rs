@@ -57,7 +57,7 @@ impl<'a> JudgedRow<'a> {
 /// Measures the firmware and prints the table.
 ///
 /// # Errors
-/// Fails if no ELF is given or it cannot be used, if the firmware stops or does not answer, or if a budget is broken.
+/// Fails if no usable ELF is given, if the firmware stops or does not answer, or if a figure is over its budget.
 pub fn run(args: Args) -> Result<(), Failure> {
     let Some(elf) = args.elf else {
         return Err(Failure::Input(
@@ -86,15 +86,15 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         table::print(&rows, figures.gait.as_deref(), &mut out)?;
     }
-    let broken_budgets: Vec<&str> = rows
+    let figures_over_budget: Vec<&str> = rows
         .iter()
         .filter(|row| !row.is_within_budget())
         .map(|row| row.what)
         .collect();
-    if broken_budgets.is_empty() {
+    if figures_over_budget.is_empty() {
         Ok(())
     } else {
-        let names = broken_budgets.join(", ");
+        let names = figures_over_budget.join(", ");
         Err(Failure::Impossible(format!("over budget: {names}")))
     }
 }

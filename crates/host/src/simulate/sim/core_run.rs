@@ -56,7 +56,7 @@ impl CoreRun {
         self.running_robot.settle();
     }
 
-    /// Runs a control tick at this cycle, and returns the pulse widths of the frame that it begins, cycles.
+    /// Runs a control tick at this cycle, and returns the pulse widths of the frame that it starts, cycles.
     fn tick(&mut self, cycle: u64) -> [u16; 4] {
         self.wake(cycle);
         self.running_robot.board.tick();
@@ -121,7 +121,7 @@ pub fn play_with_contacts(
     let mut widths = Vec::with_capacity(frame_count);
     for frame_index in 0..silent_count + frame_count {
         let start = first_pulse_cycle + frame_index as u64 * FRAME_CYCLES;
-        // A control tick is one slot before the first pulse of the frame that it begins.
+        // A control tick is one slot before the first pulse of the frame that it starts.
         let tick_cycle = start.saturating_sub(silent_count as u64 * FRAME_CYCLES + SLOT_CYCLES);
         loop {
             let next_wake_cycle = run

@@ -35,7 +35,7 @@ pub struct Report<'a> {
     pub asleep_percent: f64,
     /// Bytes of flash of the firmware.
     pub flash: u32,
-    /// The RAM in use; `None` for an image that is not an ELF, because it does not say where its data ends.
+    /// The RAM in use; `None` for an image that is not an ELF, because it does not state where the data ends.
     #[serde(flatten)]
     pub ram: Option<Ram>,
     /// Number of received bytes that were lost because the firmware read them too late.
@@ -183,7 +183,7 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// Measures the RAM of a UNO's program; `None` if the image does not say where its data ends.
+    /// Measures the RAM of a UNO's program; `None` if the image does not state where its data ends.
     pub fn measure(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();
         (static_ram > 0).then(|| Self {

@@ -1,4 +1,4 @@
-//! Tests of bad input: each case has its message and exit code, and leaves no half-written output.
+//! Tests of invalid input: each case has its message and exit code, and leaves no incomplete output.
 
 use lizard_time_limit::LIMIT;
 

@@ -19,29 +19,29 @@ pub enum Effect {
     Skip,
     /// Returns from a function or an interrupt.
     Return,
-    /// An indirect jump or call: `ijmp`, `icall` and their extended forms.
+    /// Jumps to or calls a computed address: `ijmp`, `icall` and their extended forms.
     Indirect,
     /// Enables interrupts: `sei`.
     EnableInterrupts,
-    /// r29:r28 gets the stack pointer. This instruction copies its low byte; the high byte follows.
+    /// Copies the stack pointer to r29:r28. This instruction copies the low byte; the high byte follows.
     PointerFromStack,
-    /// The stack pointer gets r29:r28. This instruction copies its low byte, which is written last.
+    /// Copies r29:r28 to the stack pointer. This instruction copies the low byte, which is written last.
     StackFromPointer,
-    /// The stack pointer gets another value.
+    /// Sets the stack pointer to anything but r29:r28.
     StackFromOther,
     /// Adds a constant to r29:r28.
     AddToPointer(i16),
-    /// The low half of a 16-bit subtraction from r29:r28: `subi r28`.
+    /// Does the low half of a 16-bit subtraction from r29:r28: `subi r28`.
     SubtractLow(u8),
-    /// The high half of a 16-bit subtraction from r29:r28: `sbci r29` or `sbc r29`.
+    /// Does the high half of a 16-bit subtraction from r29:r28: `sbci r29` or `sbc r29`.
     SubtractHigh(u8),
-    /// r28 gets a constant: `ldi r28`.
+    /// Loads a constant into r28: `ldi r28`.
     LoadLow(u8),
-    /// r29 gets a constant: `ldi r29`.
+    /// Loads a constant into r29: `ldi r29`.
     LoadHigh(u8),
-    /// r29:r28 gets another value.
+    /// Sets r29:r28 to an unknown value.
     LosePointer,
-    /// r26 gets a constant, the frame size for a shared prologue or epilogue: `ldi r26`.
+    /// Loads a constant, the frame size for a shared prologue or epilogue, into r26: `ldi r26`.
     LoadFrameSize(u8),
 }
 
