@@ -1,21 +1,18 @@
-// The part of the page's address after the #, which no server sees, names a room and a robot. So a link or a bookmark
-// keeps a robot.
+// The fragment of the page's address, the part after the #, names a room and a robot, so that a link or a bookmark
+// keeps them. No server sees it.
 import { pack } from './link-text';
 import type { Session } from './session';
 
 /**
- * Time without a further change after which the address is written, ms: browsers refuse an address that changes too
+ * Delay from the last change of the robot to the update of the address, ms: browsers refuse an address that changes too
  * often.
  */
 const UPDATE_DELAY_MS = 300;
 
-/** Returns the parts after the # of an address: `room`, and a robot as `file` or as `robot`, its compressed text. */
+/** Parses the fragment of an address: `room`, and the robot as `file`, its name, or as `robot`, its packed text. */
 export const addressParts = (hash: string) => new URLSearchParams(hash.slice(1));
 
-/**
- * The `state` of the browser history's entries that the page wrote; such an entry names a room and the robot of that
- * time.
- */
+/** The `state` of a browser history entry that the page wrote; it names a room and the robot at the time of writing. */
 export const PAGE_ENTRY = 'own';
 
 export class Address {
@@ -31,18 +28,18 @@ export class Address {
     session.followRobot(() => this.scheduleUpdate());
   }
 
-  /** Starts to update the address with each change of the robot; called once the page's first address has been read. */
-  begin(): void {
+  /** Starts to update the address after each change of the robot; called once the initial address has been read. */
+  start(): void {
     this.isInitialAddressRead = true;
     this.scheduleUpdate();
   }
 
-  /** Schedules an update of the address for a changed robot. */
+  /** Schedules an update of the address. */
   scheduleUpdate(): void {
     if (!this.isInitialAddressRead) return;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
-      // A browser that cannot compress keeps the old address; the button for a link says why.
+      // In a browser that cannot compress, the address stays as it is; the button that copies a link shows the reason.
       this.update().catch((error: unknown) => console.info(`The address does not follow the robot: ${String(error)}`));
     }, UPDATE_DELAY_MS);
   }
@@ -50,7 +47,7 @@ export class Address {
   private async update(): Promise<void> {
     const { toml, original, file } = this.session;
     const robot = toml === original ? null : await pack(toml);
-    // The robot may have changed meanwhile; a later call then shows it.
+    // The robot has changed meanwhile, so a later update is scheduled.
     if (this.session.toml !== toml) return;
     const parts = new URLSearchParams();
     const room = addressParts(location.hash).get('room');

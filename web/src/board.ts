@@ -1,10 +1,10 @@
-// The WebAssembly module for boards, which writes to a board and calibrates its servos.
+// The WebAssembly module that writes to a board and calibrates its servos.
 import type * as Board from '../generated/board';
 import { files } from './files';
 
 let boardPromise: Promise<typeof Board> | null = null;
 
-/** Loads the module. Throws an error for the user. */
+/** Loads the module, once. Throws an error with a message for the user. */
 export function loadBoard(): Promise<typeof Board> {
   const load = async () => {
     const [board, module] = await Promise.all([import('../generated/board'), files.board()]);

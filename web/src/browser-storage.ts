@@ -1,13 +1,13 @@
-// Keeps the user's changes across a reload, in the browser's storage.
+// Keeps the user's changes in the browser's local storage, so that they survive a reload.
 import type { Bars, Floor } from './robot';
 
 /** A robot and the user's changes to it. */
 export interface SavedChanges {
   /** The name of the robot's file. */
   file: string;
-  /** The robot.toml of the file at that time: the changes apply only to this text. */
+  /** The robot.toml of the file when the changes were made: they apply only to this text. */
   original: string;
-  /** The robot.toml with its changes. */
+  /** The changed robot.toml. */
   toml: string;
   /** Floor, mass, feet and leg drive as set in the page; null for the values of robot.toml. */
   floor: Floor | null;
@@ -15,12 +15,12 @@ export interface SavedChanges {
   volts: number;
 }
 
-/** The prefix of the storage keys; it differs for pages at other addresses of the same server. */
-const KEY = `lizard ${location.pathname}`;
-const ASIDE_KEY = `${KEY} aside`;
-const GAIT_KEY = `${KEY} gait`;
+/** The key of the changes and the prefix of all keys; it differs between pages of the same server. */
+const CHANGES_KEY = `lizard ${location.pathname}`;
+const ASIDE_KEY = `${CHANGES_KEY} aside`;
+const GAIT_KEY = `${CHANGES_KEY} gait`;
 
-/** Largest number of robots that are put aside; older ones are dropped. */
+/** Largest number of robots that are put aside; the oldest ones beyond it are dropped. */
 const MAX_PUT_ASIDE = 8;
 
 function store(key: string, value: unknown): void {
@@ -31,22 +31,22 @@ function store(key: string, value: unknown): void {
   }
 }
 
-/** Returns the stored robots that this version of the page can use; none if the text is damaged. */
+/** Returns the stored robots that this version of the page can use; an empty list if the stored text is damaged. */
 function loadSavedChanges(key: string): SavedChanges[] {
   try {
     const states = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
     return states.flatMap((state) => {
       if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return [];
-      // An earlier page stored springs in another form, which is dropped.
-      const isKnown = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
-      return [{ ...state, floor: isKnown ? state.floor : null }];
+      // An earlier version of the page stored springs in another form, which is dropped.
+      const isCurrentForm = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
+      return [{ ...state, floor: isCurrentForm ? state.floor : null }];
     });
   } catch {
     return [];
   }
 }
 
-/** True if a stored value has the fields of a gait; the ranges of its numbers are checked with the robot. */
+/** True if a stored value has the fields of a gait; the ranges of its numbers are checked later, with the robot. */
 function isGait(value: unknown): value is Bars {
   const { name, held, period, duty, amplitude, start, gain } = (value ?? {}) as Partial<Bars>;
   const numbers = [period, duty, amplitude, ...(start ?? []), ...(gain ?? [])];
@@ -54,18 +54,18 @@ function isGait(value: unknown): value is Bars {
 }
 
 export const browserStorage = {
-  /** Stores the changes; without storage in the browser they are lost at a reload. */
-  putChanges: (state: SavedChanges) => store(KEY, state),
+  /** Stores the changes; if the browser has no storage, they are lost at a reload. */
+  putChanges: (state: SavedChanges) => store(CHANGES_KEY, state),
 
-  /** Returns the stored changes; null if there are none that can be used. */
-  getChanges: (): SavedChanges | null => loadSavedChanges(KEY)[0] ?? null,
+  /** Returns the stored changes; null if there are no usable ones. */
+  getChanges: (): SavedChanges | null => loadSavedChanges(CHANGES_KEY)[0] ?? null,
 
   /** Returns the robots that were put aside, the latest first. */
   getPutAside: () => loadSavedChanges(ASIDE_KEY),
 
   putRobotsAside: (robots: SavedChanges[]) => store(ASIDE_KEY, robots.slice(0, MAX_PUT_ASIDE)),
 
-  /** Returns the gait that is being made; null if there is none that can be used. */
+  /** Returns the gait in the editor; null if there is no usable one. */
   getGait: (): Bars | null => {
     try {
       const gait: unknown = JSON.parse(localStorage.getItem(GAIT_KEY) ?? 'null');

@@ -1,4 +1,4 @@
-// A second robot on the same floor: the firmware's core, which walks another gait than the page's robot.
+// A second robot on the same floor, simulated with its own instance of the firmware's core; it can walk another gait.
 import { isRefused, type Floor, type Frame, Robot } from './robot';
 
 /** Frames of 20 ms from power-on until the robot stands. */
@@ -34,7 +34,7 @@ export class Companion {
   }
 
   /** Frees the companion's robot; `frame` stays valid. */
-  end(): void {
+  dispose(): void {
     this.robot.free();
   }
 

@@ -1,4 +1,4 @@
-// The files that `make web` puts beside the page: robots, the firmware's code, the boot loader.
+// Access to the files that `make web` puts beside the page: robots, firmware, boot loader, WebAssembly modules.
 import type { Predictions } from './robot';
 
 async function getFile(path: string): Promise<Response> {
@@ -13,7 +13,7 @@ const getText = async (path: string): Promise<string> => (await getFile(path)).t
 
 const getJson = async <T>(path: string): Promise<T> => (await getFile(path)).json() as Promise<T>;
 
-/** Modules by their paths: workers share what the browser has compiled. */
+/** Compiled modules by their paths; workers share them. */
 const modules = new Map<string, Promise<WebAssembly.Module>>();
 
 function compileWasm(path: string): Promise<WebAssembly.Module> {
@@ -25,24 +25,24 @@ function compileWasm(path: string): Promise<WebAssembly.Module> {
 }
 
 export const files = {
-  /** The names of the robots' files, without extension: of all robots, and of those that are meant for tests. */
+  /** The names of the robots' files without extension: of `all` robots, and of those that are meant for `tests`. */
   robots: (): Promise<{ all: string[]; tests: string[] }> => getJson('files/robots.json'),
-  /** The robot.toml of a robot, by the name of its file. */
+  /** The robot.toml of the robot whose file has this name. */
   toml: (name: string): Promise<string> => getText(`files/${name}.toml`),
-  /** The predictions of a robot's gaits; null if the file is missing, since the page can compute them, too. */
+  /** The predictions of a robot's gaits; null if their file is missing, since the page can also compute them. */
   predictions: (name: string): Promise<Predictions | null> => getJson<Predictions>(`files/${name}.predictions.json`).catch(() => null),
-  /** The firmware without a robot, from address 0 on. */
-  code: (): Promise<Uint8Array> => getBytes('files/code.bin'),
-  /** The boot loader of a UNO, from its start on. */
+  /** The firmware's image without a robot, from address 0. */
+  firmware: (): Promise<Uint8Array> => getBytes('files/code.bin'),
+  /** The UNO's boot loader, from its first byte. */
   bootLoader: (): Promise<Uint8Array> => getBytes('files/optiboot.bin'),
-  /** The module of the robot itself. */
+  /** The WebAssembly module of the robot itself. */
   wasm: (): Promise<WebAssembly.Module> => compileWasm('files/lizard.wasm'),
   /** The module of the robot with the search for a faster gait; loaded on demand. */
   tune: (): Promise<WebAssembly.Module> => compileWasm('files/tune.wasm'),
   /** The module of the robot's parts; loaded when their panel is opened. */
   parts: (): Promise<WebAssembly.Module> => compileWasm('files/parts.wasm'),
-  /** The module that writes to boards and calibrates them; loaded for that, or to identify a board without this firmware. */
+  /** The module that writes to boards, calibrates and identifies them; loaded when it is needed. */
   board: (): Promise<WebAssembly.Module> => compileWasm('files/board.wasm'),
-  /** The module that measures films; loaded when a camera, a film or the sheet of tags is asked for. */
+  /** The module that measures films; loaded when the user opens a camera or a film, or saves the sheet of tags. */
   measure: (): Promise<WebAssembly.Module> => compileWasm('files/measure.wasm'),
 };

@@ -1,11 +1,11 @@
-// Follows the page's state.
+// Runs code when the page's state changes.
 import { effect, type ReadonlySignal, untracked } from '@preact/signals-core';
 
-/** Calls `act` now, and again whenever one of the signals has changed. */
-export function follow(signals: ReadonlySignal<unknown>[], act: () => void): void {
+/** Calls `action` now, and again whenever one of the signals has changed. */
+export function follow(signals: ReadonlySignal<unknown>[], action: () => void): void {
   effect(() => {
-    // Reading a signal makes this effect follow it.
+    // Reading a signal subscribes this effect to it.
     signals.forEach((signal) => signal.value);
-    untracked(act);
+    untracked(action);
   });
 }

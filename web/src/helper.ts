@@ -1,16 +1,16 @@
-// A web worker whose functions the page calls. Computations of tenths of a second run in a worker, since the page has
-// 16 ms for a picture.
+// A web worker whose functions the page calls. A computation of tenths of a second runs in a worker, since the page has
+// only 16 ms per animation frame.
 import { type Remote, wrap } from 'comlink';
 
-export class Helper<Functions> {
-  private readonly functions: Remote<Functions>;
+export class Helper<Api> {
+  private readonly api: Remote<Api>;
   /** The reason why the worker cannot be loaded; null while no failure is known. */
   private loadError: Error | null = null;
-  /** The reject functions of the calls that wait for an answer. */
+  /** The reject functions of the pending calls. */
   private readonly pendingRejects = new Set<(error: Error) => void>();
 
   constructor(private readonly worker: Worker) {
-    this.functions = wrap<Functions>(worker);
+    this.api = wrap<Api>(worker);
     worker.addEventListener('error', ({ message }) => {
       this.loadError = new Error(message || 'the worker could not be loaded');
       for (const reject of this.pendingRejects) reject(this.loadError);
@@ -18,24 +18,23 @@ export class Helper<Functions> {
   }
 
   /**
-   * Calls a function of the worker. Rejects with the error that the function throws, or if the worker cannot be
-   * loaded.
+   * Calls a function of the worker. Rejects with the error that the function throws, or if the worker cannot be loaded.
    */
-  async ask<Answer>(call: (functions: Remote<Functions>) => Promise<Answer>): Promise<Answer> {
+  async call<Result>(invoke: (api: Remote<Api>) => Promise<Result>): Promise<Result> {
     if (this.loadError) throw this.loadError;
     let rejectCall: (error: Error) => void = () => {};
     try {
-      return await new Promise<Answer>((resolve, reject) => {
+      return await new Promise<Result>((resolve, reject) => {
         this.pendingRejects.add((rejectCall = reject));
-        call(this.functions).then(resolve, reject);
+        invoke(this.api).then(resolve, reject);
       });
     } finally {
       this.pendingRejects.delete(rejectCall);
     }
   }
 
-  /** Ends the worker; calls under way are not answered. */
-  end(): void {
+  /** Terminates the worker; pending calls are never settled. */
+  terminate(): void {
     this.worker.terminate();
   }
 }

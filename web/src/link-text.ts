@@ -1,6 +1,6 @@
-// A robot as a link: its robot.toml, compressed, after the # of the page's address, where no server sees it.
+// A robot as a link: its compressed robot.toml in the fragment of the page's address, which no server sees.
 
-/** The largest robot.toml that is accepted, in bytes; typical ones have a few thousand. */
+/** Size of the largest robot.toml that is accepted, bytes; a typical one has a few thousand. */
 const MAX_BYTES = 200_000;
 
 async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
@@ -16,17 +16,17 @@ async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | 
   return new Uint8Array(await new Blob(chunks).arrayBuffer());
 }
 
-/** Compresses a robot.toml to the part `robot` of an address. */
+/** Compresses a robot.toml to the parameter `robot` of an address. */
 export async function pack(toml: string): Promise<string> {
   const bytes = await pipe(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
-  const letters = btoa(String.fromCharCode(...bytes));
+  const base64 = btoa(String.fromCharCode(...bytes));
   // base64url, which needs no escapes in an address.
-  return letters.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+  return base64.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
 /**
- * Returns a robot.toml without its comments, which would be most of a link's letters. Returns it unchanged if the
- * text without comments would parse to other values, as with a # in a text of several lines.
+ * Returns a robot.toml without its comments, which would be most of a link's characters. Returns the text unchanged if
+ * it would parse to other values without them, for example because of a # in a multi-line string.
  */
 async function withoutComments(toml: string): Promise<string> {
   const { parse } = await import('smol-toml');
@@ -34,16 +34,16 @@ async function withoutComments(toml: string): Promise<string> {
   return JSON.stringify(parse(shortText)) === JSON.stringify(parse(toml)) ? shortText : toml;
 }
 
-/** Returns a link to this page that opens a robot, without comments, short enough for a chat or a QR code. */
+/** Returns a link that opens this page with a robot, short enough for a chat or a QR code. */
 export async function linkTo(toml: string): Promise<string> {
   return `${location.href.split('#')[0]}#robot=${await pack(await withoutComments(toml))}`;
 }
 
-/** Reads the robot.toml from the part `robot` of an address. Throws an error for the user. */
+/** Reads the robot.toml from the parameter `robot` of an address. Throws an error with a message for the user. */
 export async function unpack(encoded: string): Promise<string> {
   try {
-    const letters = atob(encoded.replaceAll('-', '+').replaceAll('_', '/'));
-    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+    const base64 = atob(encoded.replaceAll('-', '+').replaceAll('_', '/'));
+    const bytes = Uint8Array.from(base64, (character) => character.charCodeAt(0));
     return new TextDecoder('utf-8', { fatal: true }).decode(await pipe(bytes, new DecompressionStream('deflate-raw')));
   } catch {
     throw new Error('The robot in the address is incomplete; was the whole link copied?');

@@ -11,7 +11,7 @@ import type { Link } from './link/link';
 import { hasSerial, NO_SERIAL_MESSAGE, PortLink } from './link/port-link';
 import { keepOffline } from './offline';
 import { Predictor } from './predictor';
-import { lags, load } from './robot';
+import { canLag, load } from './robot';
 import { Session } from './session';
 import type { BoardBanner } from './session-state';
 import { messageOf } from './trouble';
@@ -95,8 +95,8 @@ async function start(): Promise<void> {
     onTrouble(cause, message) {
       if (cause === 'fault' && message !== null) remote.buzz();
       // Offers this firmware to a board without it.
-      const remedy = { label: 'Write firmware and robot to it', act: () => flash.write('all') };
-      troubles.say(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
+      const remedy = { label: 'Write firmware and robot to it', action: () => flash.write('all') };
+      troubles.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
   });
 
@@ -171,7 +171,7 @@ async function start(): Promise<void> {
 
   session.followRobot(({ words }) => {
     const strangeWords = unknownWords([...drive.commands], words);
-    if (strangeWords.length > 0) troubles.say('page', `The core does not know these words of the page: ${strangeWords.join(', ')}.`);
+    if (strangeWords.length > 0) troubles.setMessage('page', `The core does not know these words of the page: ${strangeWords.join(', ')}.`);
   });
   effect(() => {
     const { link, banner, description, isReal } = session;
@@ -209,7 +209,7 @@ async function start(): Promise<void> {
     setText(element('cycle'), formatDisplacement(measured) || '–');
     setText(element('predicted'), formatDisplacement(prediction) || '–');
     // Rigid legs without play do not lag.
-    const isLagging = lags(session.floor);
+    const isLagging = canLag(session.floor);
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !isLagging;
     setText(element('lag'), measured ? `${measured.lag.toFixed(1)}°` : '–');
     setText(element('share'), prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
@@ -219,11 +219,11 @@ async function start(): Promise<void> {
   const loadChosenFile = async () => {
     try {
       await session.choose(choice.chosenFile);
-      troubles.say('robot', null);
+      troubles.setMessage('robot', null);
     } catch (error) {
       choice.select(session.file);
       if (!session.link) element('where').textContent = 'No robot could be read.';
-      troubles.say('robot', messageOf(error));
+      troubles.setMessage('robot', messageOf(error));
     }
   };
   const ownRobot = new OwnRobot(session, troubles, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
@@ -246,7 +246,7 @@ async function start(): Promise<void> {
       if (session.isReal) await session.disconnect();
       else if (await session.connect(await open())) setup.openNeededStep();
     } catch (error) {
-      troubles.say('port', `No board is connected: ${messageOf(error)}`);
+      troubles.setMessage('port', `No board is connected: ${messageOf(error)}`);
     }
   }
   connectButton.addEventListener('click', () => void connectBoard());
@@ -265,16 +265,16 @@ async function start(): Promise<void> {
   const wantedFile = addressFile ?? saved?.file;
   const isKnownFile = wantedFile === undefined || choice.select(wantedFile);
   await loadChosenFile();
-  const reportMissing = (file: string) => troubles.say('robot', `This page has no ${file}.toml, which its address asks for.`);
+  const reportMissing = (file: string) => troubles.setMessage('robot', `This page has no ${file}.toml, which its address asks for.`);
   if (addressFile !== null && !isKnownFile) reportMissing(addressFile);
   // The robot in the address takes precedence over a stored one.
   const isRobotInAddress = addressFile !== null || addressParts(location.hash).has('robot');
   if (saved && session.file === saved.file && !(await session.restoreSaved(saved)) && !isRobotInAddress) {
-    const remedy = { label: 'Download what was changed', act: () => void downloadRobot(saved.toml, saved.floor) };
+    const remedy = { label: 'Download what was changed', action: () => void downloadRobot(saved.toml, saved.floor) };
     const message = `${saved.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
-    troubles.say('robot', message, remedy);
+    troubles.setMessage('robot', message, remedy);
   }
-  if (await text.loadFromAddress()) address.begin();
+  if (await text.loadFromAddress()) address.start();
   if (isRobotInAddress) ownRobot.putAside(saved);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
@@ -282,7 +282,7 @@ async function start(): Promise<void> {
     // Back and forward change the room, and the robot stays.
     if (state === PAGE_ENTRY) return address.scheduleUpdate();
     const file = addressParts(hash).get('file');
-    if (file === null) return void replaceRobot(async () => (await text.loadFromAddress(hash)) && address.begin());
+    if (file === null) return void replaceRobot(async () => (await text.loadFromAddress(hash)) && address.start());
     if (choice.select(file)) void replaceRobot(loadChosenFile);
     else reportMissing(file);
   });
@@ -305,7 +305,7 @@ async function start(): Promise<void> {
       if (!session.description) return;
       if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, recordView.frameToDraw(session.last), recordView.companionFrame);
       recordView.afterDrawing();
-      parts.draw(session.last);
+      parts.render(session.last);
       pictureCount += 1;
       if (pictureCount % PICTURES_PER_DRAWING === 0) {
         scope.draw(latestCycle);
@@ -338,5 +338,5 @@ function boardText(name: string, banner: BoardBanner | undefined, hash: string):
 openRoom(location.hash);
 start().catch((error: unknown) => {
   element('where').textContent = 'The page cannot begin.';
-  troubles.say('page', messageOf(error));
+  troubles.setMessage('page', messageOf(error));
 });

@@ -1,14 +1,14 @@
 /// <reference types="vite/client" />
-// The page without a network: a service worker (service-worker.js) stores all files, and a newer page is loaded only when
-// the user says so, never while the robot walks.
+// The page without a network: a service worker (service-worker.js) stores all files, and a newer version is loaded only
+// at the user's request, never by itself while the robot walks.
 import { messageOf } from './trouble';
 
 /**
- * Stores the page on this machine. Calls `onUpdate` when a newer page is ready, with a function that loads the newer
- * page.
+ * Stores the page on this machine. Calls `onUpdate` when a newer version is ready, with a function that loads this
+ * version.
  */
 export async function keepOffline(onUpdate: (load: () => void) => void): Promise<void> {
-  // Only over https and on localhost; otherwise the page needs the network.
+  // A browser has service workers only over https and on localhost; otherwise the page needs the network.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const { serviceWorker } = navigator;
   const isFirstVisit = serviceWorker.controller === null;

@@ -1,12 +1,12 @@
-// Predicts each gait's displacement in a worker: on a phone this takes seconds. The predictions for the robots that
-// come with the page are files of the page.
+// Predicts each gait's displacement in a worker, since on a phone this takes seconds. The robots that come with the
+// page have files with their predictions.
 import { signal } from '@preact/signals-core';
 
 import { follow } from './follow';
 import type { Helper } from './helper';
 import type { GaitPrediction } from './robot';
-import { robotHelper } from './robot-helper';
-import type { RobotFunctions } from './robot-worker';
+import { startRobotHelper } from './robot-helper';
+import type { RobotWorkerApi } from './robot-worker';
 import type { Session } from './session';
 
 /** A gait and its predicted displacement per cycle. */
@@ -16,10 +16,11 @@ export interface PredictedGait {
 }
 
 export class Predictor {
-  /** The predictions for the session's robot so far, by the gaits' commands. */
+  /** The predictions made so far for the session's robot, by the gaits' commands. */
   readonly predictions = signal<ReadonlyMap<string, GaitPrediction>>(new Map());
-  private helper: Promise<Helper<RobotFunctions>> | null = null;
-  private questionCount = 0;
+  private helper: Promise<Helper<RobotWorkerApi>> | null = null;
+  /** Number of calls of `predict` so far: a later call cancels an earlier one. */
+  private callCount = 0;
 
   constructor(private readonly session: Session) {
     session.followRobot(() => (this.predictions.value = new Map()));
@@ -35,18 +36,18 @@ export class Predictor {
     });
   }
 
-  /** Predicts every gait, beginning with the robot's current one; a newer call ends it. */
+  /** Predicts every gait, starting with the robot's current one; a later call cancels this one. */
   private async predict(): Promise<void> {
     const { toml, floor, servos, description, filePredictions, gait: currentGait } = this.session;
     const { gaits } = description;
-    const questionNumber = ++this.questionCount;
+    const callNumber = ++this.callCount;
     filePredictions?.forEach((prediction, gait) => this.put(gaits[gait].command, prediction));
     if (filePredictions) return;
     const firstIndex = Math.max(0, gaits.findIndex(({ command }) => command === currentGait));
     for (let n = 0; n < gaits.length; n++) {
       const gait = (firstIndex + n) % gaits.length;
-      const prediction = await (await (this.helper ??= robotHelper())).ask((robot) => robot.predict({ toml, floor, servos, gait }));
-      if (questionNumber !== this.questionCount) return;
+      const prediction = await (await (this.helper ??= startRobotHelper())).call((robot) => robot.predict({ toml, floor, servos, gait }));
+      if (callNumber !== this.callCount) return;
       this.put(gaits[gait].command, prediction);
     }
   }

@@ -1,30 +1,28 @@
-// Runs the simulation in real time, or slower where the page cannot keep up.
+// Runs the simulation in real time, or slower if the machine cannot keep up.
 
-/** Longest simulated time per picture, ms: what a hidden or slow page misses beyond this is skipped. */
+/** Longest simulated time per animation frame, ms; the time that a hidden or slow page misses beyond it is skipped. */
 const MAX_CATCH_UP_MS = 100;
-/** Slice of simulated time, ms; promises are settled between two slices. */
+/** Slice of simulated time, ms; promise callbacks run between two slices. */
 const SLICE_MS = 4;
-/** CPU time that the simulation may take for a picture, ms; if it needs more, it falls behind real time. */
-const PICTURE_BUDGET_MS = 30;
+/** CPU time that the simulation may take per animation frame, ms; if it needs more, it falls behind real time. */
+const FRAME_BUDGET_MS = 30;
 
-/**
- * Calls `advance` with the time since the last picture, in slices, and then `draw`, for each picture of the browser.
- */
+/** In each animation frame, calls `advance` with the time since the previous frame, in slices, and then `draw`. */
 export function runInRealTime(advance: (ms: number) => void, draw: () => void): void {
-  let lastTime: number | null = null;
+  let previousTime: number | null = null;
   let hasFailed = false;
   const handleFrame = async (now: number) => {
-    let remainingMs = lastTime === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - lastTime));
-    lastTime = now;
+    let remainingMs = previousTime === null ? 0 : Math.min(MAX_CATCH_UP_MS, Math.max(0, now - previousTime));
+    previousTime = now;
     const start = performance.now();
     try {
-      while (remainingMs > 0 && !hasFailed && performance.now() - start < PICTURE_BUDGET_MS) {
+      while (remainingMs > 0 && !hasFailed && performance.now() - start < FRAME_BUDGET_MS) {
         advance(Math.min(SLICE_MS, remainingMs));
         remainingMs -= SLICE_MS;
         await Promise.resolve();
       }
     } catch (error) {
-      // The failure is reported once; the page continues without the simulation.
+      // The failure is reported only once, and the page continues without the simulation.
       hasFailed = true;
       console.error(error);
     }

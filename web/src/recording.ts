@@ -1,25 +1,25 @@
 // A recorded run of the robot, frame by frame, for replay and for export.
 import type { Four, Frame } from './robot';
 
-/** One frame of a recording. */
+/** A frame of the robot in a recording, with its time, activity and pulses. */
 export interface RecordedFrame {
-  /** Time since the recording began, s. */
+  /** Time since the start of the recording, s. */
   time: number;
-  /** The gait or command of this frame. */
+  /** The robot's gait or command at this time. */
   activity: string;
   frame: Frame;
-  /** Pulse widths, CPU cycles; null for a board on USB, which does not show its pulses. */
+  /** Pulse widths, CPU cycles; null for a real board, whose pulses are unknown. */
   widths: Four<number> | null;
 }
 
-/** Longest recording, s, so that a forgotten one does not fill the memory. */
+/** Longest duration of a recording, s, so that a forgotten one does not fill the memory. */
 export const MAX_SECONDS = 180;
 const CYCLES_PER_US = 16;
 
 export class Recording {
   readonly frames: RecordedFrame[] = [];
 
-  /** Adds a frame that lasts `seconds`; returns true while there is room for more. */
+  /** Adds a frame that lasts `seconds`; returns false once the recording is full. */
   add(frame: Frame, widths: Four<number> | null, activity: string, seconds: number): boolean {
     const lastFrame = this.frames[this.frames.length - 1];
     this.frames.push({ time: lastFrame ? lastFrame.time + seconds : 0, activity, frame, widths });
@@ -31,7 +31,7 @@ export class Recording {
     return this.frames[this.frames.length - 1]?.time ?? 0;
   }
 
-  /** Returns the frame that was current at a time, s; null if the recording is empty. */
+  /** Returns the frame that was current at `time`, s; null if the recording is empty. */
   frameAt(time: number): RecordedFrame | null {
     const laterIndex = this.frames.findIndex((frame) => frame.time > time + 1e-9);
     return this.frames[laterIndex < 0 ? this.frames.length - 1 : Math.max(0, laterIndex - 1)] ?? null;
@@ -39,7 +39,7 @@ export class Recording {
 
   /** Formats the recording as CSV, one line per frame: angles and lags in deg, place in mm, pulses in us. */
   csv(): string {
-    const fourNames = (name: (number: number) => string) => [1, 2, 3, 4].map(name);
+    const fourNames = (nameOf: (number: number) => string) => [1, 2, 3, 4].map(nameOf);
     const header = [
       'time_s', 'doing', ...fourNames((n) => `a${n}_deg`), 'right_mm', 'ahead_mm', 'heading_deg',
       ...['lf', 'rf', 'rh', 'lh'].map((leg) => `lag_${leg}_deg`), ...fourNames((n) => `pulse_a${n}_us`),
@@ -47,7 +47,7 @@ export class Recording {
     const emptyFields = ['', '', '', ''];
     const lines = this.frames.map(({ time, activity, frame: { scene, place, lag }, widths }) => [
       time.toFixed(2),
-      // A gait's name comes from a file: it must neither start a formula nor end a field.
+      // A gait's name comes from a file. The quotes keep it from ending the field.
       `"${activity.replaceAll('"', '""')}"`,
       ...(scene?.angles.map((angle) => angle.toFixed(3)) ?? emptyFields),
       ...[place.x, place.y, place.heading].map((value) => (Number(value.toFixed(2)) + 0).toFixed(2)),

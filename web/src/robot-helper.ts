@@ -1,24 +1,24 @@
-// Starts workers that have a robot of their own.
+// Starts workers that each have a robot of their own.
 import type { Remote } from 'comlink';
 
 import { files } from './files';
 import { Helper } from './helper';
 import { LatestQuestion } from './latest-question';
-import type { RobotFunctions } from './robot-worker';
+import type { RobotWorkerApi } from './robot-worker';
 
 /** Starts a worker that has a robot of its own. */
-export async function robotHelper(): Promise<Helper<RobotFunctions>> {
+export async function startRobotHelper(): Promise<Helper<RobotWorkerApi>> {
   const module = await files.wasm();
-  const helper = new Helper<RobotFunctions>(new Worker(new URL('./robot-worker.ts', import.meta.url), { type: 'module' }));
-  void helper.ask((robot) => robot.load(module));
+  const helper = new Helper<RobotWorkerApi>(new Worker(new URL('./robot-worker.ts', import.meta.url), { type: 'module' }));
+  void helper.call((robot) => robot.load(module));
   return helper;
 }
 
-/** Prepares questions to a worker with a robot of its own, which is started with the first question. */
-export function robotQuestion<Question, Answer>(
-  call: (robot: Remote<RobotFunctions>, question: Question) => Promise<Answer>,
+/** Prepares questions to a worker that has a robot of its own and is started by the first question. */
+export function createRobotQuestion<Question, Answer>(
+  call: (robot: Remote<RobotWorkerApi>, question: Question) => Promise<Answer>,
   onAnswer: (answer: Answer) => void,
 ): LatestQuestion<Question, Answer> {
-  let helper: Promise<Helper<RobotFunctions>> | null = null;
-  return new LatestQuestion(async (question) => (await (helper ??= robotHelper())).ask((robot) => call(robot, question)), onAnswer);
+  let helper: Promise<Helper<RobotWorkerApi>> | null = null;
+  return new LatestQuestion(async (question) => (await (helper ??= startRobotHelper())).call((robot) => call(robot, question)), onAnswer);
 }

@@ -1,10 +1,10 @@
-// The worker that `robotHelper` starts. It has its own instance of the WebAssembly robot.
+// The worker that `startRobotHelper` starts. It has its own instance of the WebAssembly robot.
 import { expose } from 'comlink';
 
 import { type EditedGait, type Edits, type Four, isRefused, load, type OnFloor, Robot, type Scene } from './robot';
 
 let robot: Robot;
-/** The robot.toml of the robot that is loaded. */
+/** The robot.toml of the loaded robot; empty before the first one. */
 let loadedToml = '';
 
 /** Loads a robot, its floor and its servos; returns false if the robot is refused. */
@@ -26,25 +26,25 @@ function neutralScene(toml: string): Scene | null {
   return robot.pose(description.servos.map(({ neutral }) => neutral) as Four<number>, 1)?.scene ?? null;
 }
 
-const functions = {
+const api = {
   /** Loads the WebAssembly module; must be called first. */
   load(module: WebAssembly.Module): void {
     robot = load(module);
   },
 
-  /** Predicts a gait; null for a refused robot. */
+  /** Predicts the gait with the index `gait`; null if the robot is refused. */
   predict: (request: OnFloor & { gait: number }) => (loadRobot(request) ? robot.predict(request.gait) : null),
 
-  /** Tries an edited gait; null for a refused robot or a drawn line without length. */
+  /** Tries an edited gait; null if the robot is refused, or if a drawn line has no length. */
   trial: (request: OnFloor & { gait: EditedGait }) => (loadRobot(request) ? robot.trial(request.gait) : null),
 
   /** Returns the path of one round of a routine; null if the robot is refused or has no such routine. */
   round: (request: OnFloor & { routine: string }) => (loadRobot(request) ? robot.round(request.routine) : null),
 
   /**
-   * Tries other lengths, and draws the neutral pose if they are accepted. `isLast` is true at the end of a drag: if
-   * the lengths are refused then, it searches for lengths that would be accepted. If `keys` is not empty, it also
-   * returns the range of values that all lengths of these keys may have together.
+   * Tries other lengths; if they are accepted, returns the scene of the neutral pose. `isLast` is true at the end of a
+   * drag: if the lengths are refused then, valid lengths are searched for. If `keys` is not empty, also returns the
+   * range of the values that all lengths of these keys may have together.
    */
   lengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
     const result = Robot.lengths(toml, edits, isLast);
@@ -53,5 +53,5 @@ const functions = {
   },
 };
 
-export type RobotFunctions = typeof functions;
-expose(functions);
+export type RobotWorkerApi = typeof api;
+expose(api);

@@ -1,4 +1,4 @@
-// The robot in WebAssembly, which computes everything; no formula is repeated in TypeScript. Its types are those of
+// The robot in WebAssembly, which computes everything; no formula is repeated in TypeScript. The types come from
 // wasm/src.
 import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type NoTrial, type Refused, Robot } from '../generated/lizard';
 
@@ -13,19 +13,19 @@ export type {
 export type Gait = Description['gaits'][number];
 export type Length = Description['lengths'][number];
 export type End = DrawnGait['end'];
-/** The values that may be too large in an edited gait. */
+/** A value of an edited gait for which a refusal can offer a valid one. */
 export type Alternative = NoTrial['instead'][number]['what'];
-/** The predictions of a robot's gaits in their order; null for a gait that could not be predicted. */
+/** The predictions of a robot's gaits, in the robot's order; null for a gait that could not be predicted. */
 export type Predictions = (GaitPrediction | null)[];
 
-/** A robot.toml, the floor, and the servo model by its name in the description. */
+/** A robot.toml with the floor and the servo model, which is given by its name in the description. */
 export interface OnFloor {
   toml: string;
   floor: Floor;
   servos: string;
 }
 
-/** Loads the WebAssembly module and makes an instance that has no robot yet. */
+/** Initializes the WebAssembly module and creates an instance that has no robot yet. */
 export function load(module: WebAssembly.Module): Robot {
   initSync({ module });
   return new Robot();
@@ -35,5 +35,5 @@ export function isRefused(answer: object): answer is Refused {
   return 'refused' in answer;
 }
 
-/** True if a leg can deviate from its servo. */
-export const lags = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;
+/** True if a leg can lag behind its servo. */
+export const canLag = ({ kind, play }: Floor) => kind !== 'rigid' || play > 0;

@@ -1,5 +1,6 @@
-// The session: the robot that the page shows, and the board at the other end of the serial line. Views read the session,
-// call its methods and follow its state: a view that reads the state in an `effect` runs again when it has changed.
+// The session: the robot that the page shows, and the board at the other end of the serial line. Views read the
+// session, call its methods and follow its state: a view that reads the state in an `effect` runs again when it has
+// changed.
 import { batch } from '@preact/signals-core';
 
 import { loadBoard } from './board';
@@ -97,9 +98,7 @@ export class Session {
   private firmware: Uint8Array | null = null;
   private bootLoader: Uint8Array | null = null;
   private readonly walkedPath = new WalkedPath();
-  /**
-   * Time for which the robot has been followed, s: simulated time, or the frames of a real board's reported poses.
-   */
+  /** Time for which the robot has been followed, s: simulated time, or the frames of a real board's reported poses. */
   clock = 0;
   /** Resolves the promise of `waitForBanner`. */
   private resolveBanner: () => void = () => {};
@@ -156,7 +155,7 @@ export class Session {
     const previousFile = this.file;
     this.file = '';
     try {
-      const [toml, predictions, firmware] = await Promise.all([files.toml(name), files.predictions(name), this.firmware ?? files.code()]);
+      const [toml, predictions, firmware] = await Promise.all([files.toml(name), files.predictions(name), this.firmware ?? files.firmware()]);
       if (choiceNumber !== this.choiceCount) return;
       this.firmware = firmware;
       const refusal = this.loadToml(toml, null, [toml, predictions]);
@@ -567,14 +566,14 @@ export class Session {
     });
   }
 
-  /** Gives the line to the boot loader until `act` has ended. Throws an error for the user. */
-  private async withBootLoader<T>(link: Link, act: (board: Awaited<ReturnType<typeof loadBoard>>, line: BootLine) => Promise<T>): Promise<T> {
+  /** Gives the line to the boot loader until `action` has ended. Throws an error with a message for the user. */
+  private async withBootLoader<T>(link: Link, action: (board: Awaited<ReturnType<typeof loadBoard>>, line: BootLine) => Promise<T>): Promise<T> {
     const board = await loadBoard();
     if (this.link !== link) throw new Error(GONE_MESSAGE);
     this.dialogue.end();
     const line = new BootLine(link);
     try {
-      return await act(board, line);
+      return await action(board, line);
     } finally {
       await line.end();
       if (this.link === link) {
@@ -648,9 +647,7 @@ export class Session {
     return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.pace) : null;
   }
 
-  /**
-   * The predictions that came with the page; null unless the robot, its floor and its servos are those of the file.
-   */
+  /** The predictions that came with the page; null unless the robot, its floor and its servos are those of the file. */
   get filePredictions(): Predictions | null {
     return this.toml === this.original && this.state.floor.value === null && this.servos === 'own' ? this.predictions : null;
   }

@@ -1,4 +1,4 @@
-// Types of the package svgcanvas, as far as the page uses it.
+// Types of the part of the package svgcanvas that the page uses.
 declare module 'svgcanvas' {
   /** A canvas context that writes SVG. */
   export class Context {

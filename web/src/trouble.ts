@@ -1,13 +1,14 @@
-// Problems by their cause: a message stays until its own cause is gone.
+// The causes of problems. The message of a problem stays until its cause is gone.
 
 /**
- * `robot`: a robot's file. `own`: the user's robot was put aside. `line`: a line without an answer. `port`: the port
- * of a board, or the board is gone. `board`: a board without this firmware. `other`: a board with another robot.
- * `fault`: the robot has stopped by itself. `simulation`: the simulated UNO has stopped. `page`: the page cannot start.
+ * The cause of a problem. `robot`: a robot's file cannot be loaded. `own`: the user's robot was put aside. `line`: a
+ * line got no answer. `port`: a port cannot be opened, or its board is gone. `board`: no answer from this firmware.
+ * `other`: the board has another robot. `fault`: the robot has stopped by itself. `simulation`: the simulated UNO has
+ * stopped. `page`: the page cannot start.
  */
 export type Cause = 'robot' | 'own' | 'line' | 'port' | 'board' | 'other' | 'fault' | 'simulation' | 'page';
 
-/** Returns the message of anything that was thrown. */
+/** Returns the message of a thrown value, which may be other than an `Error`. */
 export function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }

@@ -1,14 +1,14 @@
-// The robot's path in the last seconds, from which the page computes the displacement of a cycle.
+// The robot's path in the last seconds, from which the displacement in a cycle is computed.
 import { type Frame, Robot } from './robot';
 
-/** Duration of the path that is kept: enough for a cycle of 3 s at a tenth of its pace. */
+/** Duration of the kept path: enough for a cycle of 3 s at a tenth of its pace. */
 const KEPT_SECONDS = 31;
-/** Duration of a frame until the first one is added. */
-const FRAME_SECONDS = 0.02;
+/** Duration of a frame before the first one is added. */
+const DEFAULT_FRAME_SECONDS = 0.02;
 
 /**
- * The displacement in the last cycle, in the frame of the cycle's start: `forward` and `left` in mm, `turn` in deg;
- * and the largest lag of a servo in deg.
+ * The displacement in the last cycle, in the robot's frame at the start of the cycle: `forward` and `left` in mm,
+ * `turn` in deg counter-clockwise. `lag` is the largest lag of a leg in this cycle, deg.
  */
 export interface CycleDisplacement {
   forward: number;
@@ -19,10 +19,11 @@ export interface CycleDisplacement {
 
 export class WalkedPath {
   private frames: { time: number; frame: Frame }[] = [];
+  /** Sum of the durations of all frames, s. */
   private time = 0;
-  private frameSeconds = FRAME_SECONDS;
+  private frameSeconds = DEFAULT_FRAME_SECONDS;
 
-  /** Forgets the path, since the following frames belong to another gait, pace or robot. */
+  /** Clears the path; to be called when the following frames belong to another gait, pace or robot. */
   clear(): void {
     this.frames = [];
   }

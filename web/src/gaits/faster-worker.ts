@@ -11,7 +11,7 @@ export interface BestGait extends Found {
   trial: Trial;
 }
 
-const functions = {
+const api = {
   /**
    * Prepares a search. Returns the number of gaits to try, the speed that no servo may exceed, deg/s, and the trial of
    * the gait to beat. Throws an `Error` whose message is the refusal.
@@ -40,5 +40,5 @@ const functions = {
   },
 };
 
-export type FasterFunctions = typeof functions;
-expose(functions);
+export type FasterWorkerApi = typeof api;
+expose(api);

@@ -4,7 +4,7 @@ import type { SearchTask } from '../../generated/tune';
 import { Helper } from '../helper';
 import type { OnFloor, Trial } from '../robot';
 import { messageOf } from '../trouble';
-import type { BestGait, FasterFunctions } from './faster-worker';
+import type { BestGait, FasterWorkerApi } from './faster-worker';
 
 export type { BestGait };
 
@@ -26,7 +26,7 @@ export type SearchReport =
   | { kind: 'end'; refused: string };
 
 export class FasterSearch {
-  private readonly helper = new Helper<FasterFunctions>(new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' }));
+  private readonly helper = new Helper<FasterWorkerApi>(new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' }));
   private isStopped = false;
 
   /** Starts the search with the WebAssembly module; `onReport` gets every report, including the last. */
@@ -46,25 +46,25 @@ export class FasterSearch {
 
   /** Ends the search without a last report. */
   cancel(): void {
-    this.helper.end();
+    this.helper.terminate();
   }
 
   private async search(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, report: (report: SearchReport) => void): Promise<SearchReport> {
     const { helper } = this;
     const loadedModule = await module;
-    const start = await helper.ask((search) => search.begin(loadedModule, question));
+    const start = await helper.call((search) => search.begin(loadedModule, question));
     report({ kind: 'start', ...start });
     let [shownScore, done] = [-Infinity, 0];
     while (done < start.all && !this.isStopped) {
-      const progress = await helper.ask((search) => search.tryNext());
+      const progress = await helper.call((search) => search.tryNext());
       done = progress.done;
       report({ kind: 'progress', done });
       if (done % GAITS_PER_REPORT !== 0 || done === start.all || progress.best === null || progress.best <= shownScore) continue;
       shownScore = progress.best;
-      const best = await helper.ask((search) => search.bestSoFar(ROBOT_COUNT.progress));
+      const best = await helper.call((search) => search.bestSoFar(ROBOT_COUNT.progress));
       if (best) report({ kind: 'best', best });
     }
-    const best = await helper.ask((search) => search.bestSoFar(ROBOT_COUNT.final));
+    const best = await helper.call((search) => search.bestSoFar(ROBOT_COUNT.final));
     return { kind: 'end', best, done };
   }
 }

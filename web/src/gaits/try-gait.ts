@@ -6,7 +6,7 @@ import type { Session } from '../session';
 const WAKE_MS = 2500;
 
 /** Puts the gait into the session's robot. A board on USB gets the gait only when the robot is written to it. */
-export async function takeGait(session: Session, gait: EditedGait): Promise<Refused | null> {
+export async function applyGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   return session.change(session.robot.putGait(session.toml, gait));
 }
 
@@ -28,7 +28,7 @@ export async function restartWithGait(session: Session, gait: EditedGait): Promi
   if (session.isReal) {
     return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', meaning: null, line: null, key: '' };
   }
-  const refusal = await takeGait(session, gait);
+  const refusal = await applyGait(session, gait);
   if (refusal) return refusal;
   await session.link.wait(WAKE_MS);
   return null;

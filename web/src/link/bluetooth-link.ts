@@ -38,7 +38,7 @@ export class BluetoothLink implements Link {
   readonly kind = 'radio';
   readonly wait = sleep;
   onBytes: (bytes: Uint8Array) => void = () => {};
-  onGone: (why: string) => void = () => {};
+  onGone: (reason: string) => void = () => {};
   onReach: (isInReach: boolean) => void = () => {};
   private writeCharacteristic: BluetoothRemoteGATTCharacteristic | null = null;
   /** Settles when all writes so far are done. */
@@ -57,7 +57,7 @@ export class BluetoothLink implements Link {
     return `board at ${this.device.name || 'a Bluetooth module'}`;
   }
 
-  /** Lets the user pick a module and connects to it; null if the user picks none. Throws an error for the user. */
+  /** Connects to a module that the user picks; null if none is picked. Throws an error with a message for the user. */
   static async open(): Promise<BluetoothLink | null> {
     if (!bluetooth) throw new Error(bluetoothProblem() ?? '');
     // False without a radio, but also if the page may not use it.

@@ -69,9 +69,7 @@ interface Stop {
 
 const firstWordOf = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
 
-/**
- * True if a line that begins with `ok` or `err` can be the answer to `line`, and not a late answer to another line.
- */
+/** True if a line that begins with `ok` or `err` can be the answer to `line`, and not a late answer to another line. */
 function isAnswerTo(answer: string, line: string): boolean {
   const word = firstWordOf(line);
   const expected = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;

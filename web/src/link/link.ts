@@ -20,7 +20,7 @@ export interface Link {
   /** Called with the bytes that are received. */
   onBytes: (bytes: Uint8Array) => void;
   /** Called when the board is gone. */
-  onGone?: (why: string) => void;
+  onGone?: (reason: string) => void;
   /** Called when a radio loses contact with its board, and when contact is restored. */
   onReach?: (isInReach: boolean) => void;
   /** Sends bytes. */

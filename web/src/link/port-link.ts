@@ -1,5 +1,5 @@
-// The link to a board by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost: on USB,
-// or through an HC-05, a Bluetooth module that the system knows as a serial port.
+// The link to a board by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost: on
+// USB, or through an HC-05, a Bluetooth module that the system knows as a serial port.
 import { messageOf } from '../trouble';
 import { BAUD, GONE_MESSAGE, sleep, type Link } from './link';
 
@@ -18,7 +18,7 @@ export const hasSerial = () => Boolean(navigator.serial);
 export class PortLink implements Link {
   readonly wait = sleep;
   onBytes: (bytes: Uint8Array) => void = () => {};
-  onGone: (why: string) => void = () => {};
+  onGone: (reason: string) => void = () => {};
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
   private writer: WritableStreamDefaultWriter<Uint8Array> | null = null;
   private isClosing = false;
@@ -41,7 +41,7 @@ export class PortLink implements Link {
     return usbVendorId !== undefined && !ARDUINO_VENDORS.includes(usbVendorId);
   }
 
-  /** Lets the user pick a port and opens it, which resets a UNO; null if the user picks none. Throws an error for the user. */
+  /** Opens a port that the user picks, which resets a UNO; null if none is picked. Throws an error for the user. */
   static async open(): Promise<PortLink | null> {
     if (!hasSerial()) throw new Error(NO_SERIAL_MESSAGE);
     let port: SerialPort;

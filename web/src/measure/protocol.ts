@@ -16,8 +16,7 @@ const RETURN_GAIT = { minForwardMm: 3, maxTurnDeg: 2 };
  */
 const RETURN_DISTANCE_MM = 80;
 /**
- * Outward movement near the edge of the sheet that ends a walk, mm; not less, since the body swings within each
- * cycle.
+ * Outward movement near the edge of the sheet that ends a walk, mm; not less, since the body swings within each cycle.
  */
 const MAX_OUTWARD_MM = 20;
 /** Time for which the robot may walk without being seen by the camera, s. */
@@ -156,9 +155,7 @@ export class Protocol {
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
-  /**
-   * Ends the protocol for an external reason, such as a camera that is switched off, and stops a robot that walks.
-   */
+  /** Ends the protocol for an external reason, such as a camera that is switched off, and stops a robot that walks. */
   stop(reason: string): void {
     const wasWalking = this.activeWalk !== null;
     this.end(reason);
@@ -179,8 +176,8 @@ export class Protocol {
   }
 
   /**
-   * Brings the robot back if it is near the edge of the sheet: by a gait that leads to the middle, or else by hand.
-   * If only the next walk, of `forwardMm` mm, would leave the sheet, the robot returns to the middle if a gait can take it
+   * Brings the robot back if it is near the edge of the sheet: by a gait that leads to the middle, or else by hand. If
+   * only the next walk, of `forwardMm` mm, would leave the sheet, the robot returns to the middle if a gait can take it
    * there.
    */
   private async goBack(forwardMm: number): Promise<void> {

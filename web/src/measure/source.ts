@@ -33,7 +33,7 @@ export class PictureSource {
     return performance.now() / 1000 - this.clockOffset;
   }
 
-  /** Opens the rear camera; `onEnd` is called if the camera is lost. Throws a message for the user. */
+  /** Opens the rear camera; `onEnd` is called if the camera is lost. Throws an error with a message for the user. */
   async openCamera(onEnd: () => void): Promise<void> {
     this.stop();
     const { generation: startGeneration } = this;
@@ -53,7 +53,7 @@ export class PictureSource {
     await this.video.play();
   }
 
-  /** Plays a film file; resolves at its end. Throws a message for the user. */
+  /** Plays a film file; resolves at its end. Throws an error with a message for the user. */
   async playFile(file: File): Promise<void> {
     this.stop();
     const { video, generation: startGeneration } = this;

@@ -2,7 +2,7 @@
 // picture with the floor's tags as the scale: precise enough to warn that the robot is about to leave, not to measure
 // a gait.
 import type { Pixel, TagEntry as Tag } from '../../generated/measure';
-import type { Sight } from './worker';
+import type { Detection } from './worker';
 
 /** Names of the tags by their ids. */
 const TAG_NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left tag of strip 2', 'the right tag of strip 2', 'the tag on the deck'];
@@ -50,7 +50,7 @@ export class TagTracker {
   private readonly times: number[] = [];
 
   /** Adds the tags of the next picture. */
-  addSight({ tags, size, searchMs }: Sight): void {
+  addDetection({ tags, size, searchMs }: Detection): void {
     Object.assign(this, { tags, size, searchMs });
     for (const id of TAG_NAMES.keys()) this.missedPictures[id] = tags.some((tag) => tag.id === id) ? 0 : (this.missedPictures[id] ?? 0) + 1;
     for (const tag of tags) if (tag.id !== DECK_ID) this.floorTags[tag.id] = tag;

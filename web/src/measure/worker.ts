@@ -5,7 +5,7 @@ import { expose } from 'comlink';
 import { type Asked, Camera, initSync, type TagEntry } from '../../generated/measure';
 
 /** The tags of a picture, its size (width and height, px), and the time that the search took, ms. */
-export interface Sight {
+export interface Detection {
   tags: TagEntry[];
   size: [number, number];
   searchMs: number;
@@ -17,7 +17,7 @@ const PLANE_FORMATS = ['I420', 'I420A', 'I422', 'I444', 'NV12'];
 let planes = new Uint8Array();
 const canvas = new OffscreenCanvas(1, 1);
 // The pixels are read back often, so the canvas is kept in memory and not on the graphics chip.
-const pen = canvas.getContext('2d', { willReadFrequently: true });
+const context = canvas.getContext('2d', { willReadFrequently: true });
 
 /**
  * Returns the brightness plane of a picture, a byte for each pixel; null if it has no such plane, or is scaled,
@@ -36,22 +36,22 @@ async function greyOf(picture: VideoFrame): Promise<Uint8Array | null> {
 
 /** Returns the pixels of a picture, four bytes for each. */
 function coloursOf(picture: VideoFrame | ImageBitmap, width: number, height: number): Uint8Array {
-  if (!pen) throw new Error('this browser cannot read the pixels of a picture');
+  if (!context) throw new Error('this browser cannot read the pixels of a picture');
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-  pen.drawImage(picture, 0, 0);
-  return new Uint8Array(pen.getImageData(0, 0, width, height).data.buffer);
+  context.drawImage(picture, 0, 0);
+  return new Uint8Array(context.getImageData(0, 0, width, height).data.buffer);
 }
 
 /** Settles when all earlier calls are done; the next call waits for it. */
 let lastCall: Promise<unknown> = Promise.resolve();
 
-function runInTurn<Answer>(act: () => Answer | Promise<Answer>): Promise<Answer> {
-  const answer = lastCall.then(act);
+function runInTurn<Answer>(action: () => Answer | Promise<Answer>): Promise<Answer> {
+  const answer = lastCall.then(action);
   lastCall = answer.catch(() => {});
   return answer;
 }
 
-const functions = {
+const api = {
   load(module: WebAssembly.Module): void {
     initSync({ module });
     camera = new Camera();
@@ -59,7 +59,7 @@ const functions = {
 
   /** Finds the tags of a picture taken at `seconds`; if `isKept`, the picture is added to the film. */
   look: (picture: VideoFrame | ImageBitmap, seconds: number, isKept: boolean) =>
-    runInTurn(async (): Promise<Sight> => {
+    runInTurn(async (): Promise<Detection> => {
       const startMs = performance.now();
       const [width, height] = 'codedWidth' in picture ? [picture.displayWidth, picture.displayHeight] : [picture.width, picture.height];
       const grey = 'codedWidth' in picture ? await greyOf(picture).catch(() => null) : null;
@@ -82,5 +82,5 @@ const functions = {
   sheet: (isLetter: boolean) => Camera.sheet(isLetter) as Uint8Array<ArrayBuffer>,
 };
 
-export type FilmFunctions = typeof functions;
-expose(functions);
+export type FilmWorkerApi = typeof api;
+expose(api);

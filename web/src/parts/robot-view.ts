@@ -1,4 +1,4 @@
-// The robot in three dimensions, drawn by three.js. This file is a separate chunk, loaded on demand.
+// The robot in 3D, rendered by three.js. This file is a separate chunk, loaded on demand.
 import * as three from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
@@ -13,13 +13,13 @@ const LIFT_MM = 45;
 /** Size of a cell of the floor's grid, mm. */
 const CELL_MM = 50;
 const CELLS_PER_SIDE = 16;
-/** Movement of the pointer during a press below which the press is a click, CSS pixels. */
+/** Movement of the pointer during a press up to which the press is a click, CSS pixels. */
 const CLICK_PX = 5;
-/** Turn of the view for one press of a key, rad. */
+/** Rotation of the view per key press, rad. */
 const TURN_RAD = Math.PI / 24;
 /** Time without a change after which the view counts as still, ms. */
 const STILL_MS = 400;
-/** Share of the floor's colour in pale bodies: bodies of earlier steps, or all except the selected ones. */
+/** Share of the floor's colour in pale bodies: those of earlier steps, or all that are not highlighted. */
 const PALE_SHARE = 0.65;
 
 /** The settings of the 3D view: the spread of the exploded view, the guide's step and the highlighted bodies. */
@@ -30,7 +30,7 @@ export interface ViewSettings {
   guideStep: number | null;
   /** Index of the selected body; null for none. */
   selectedBody: number | null;
-  /** Indices of the two bodies that overlap or come too close; empty if all fit. */
+  /** Indices of the two bodies that overlap or come too close; empty if all bodies fit. */
   clashingBodies: number[];
 }
 
@@ -47,7 +47,7 @@ export class RobotView {
   private mounts: three.Group[] = [];
   private meshes: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>[] = [];
   private settings: ViewSettings = { explosion: 0, guideStep: null, selectedBody: null, clashingBodies: [] };
-  private needsDrawing = true;
+  private needsRendering = true;
   /** Time of the last change, ms. */
   private changedAt = 0;
 
@@ -64,7 +64,7 @@ export class RobotView {
     this.camera.add(this.sun);
     this.scene.add(this.camera, new three.AmbientLight(0xffffff, 1.1));
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener('change', () => (this.needsDrawing = true));
+    this.controls.addEventListener('change', () => (this.needsRendering = true));
     this.controls.maxDistance = 1500;
     this.controls.minDistance = 60;
     // A horizontal drag with one finger turns the robot; a vertical one scrolls the page.
@@ -93,7 +93,7 @@ export class RobotView {
 
   /** Rotates, zooms or resets the view, depending on the key; returns false if the key has no effect. */
   handleKey(key: string): boolean {
-    // Changes of azimuth and elevation, rad, and the factor by which the camera's distance changes; 0 resets the view.
+    // Changes of azimuth and elevation, rad, and the factor of the camera's distance; the factor 0 resets the view.
     const movesByKey: Record<string, [number, number, number]> = {
       ArrowLeft: [-TURN_RAD, 0, 1],
       ArrowRight: [TURN_RAD, 0, 1],
@@ -119,7 +119,7 @@ export class RobotView {
       this.camera.position.multiplyScalar(distance).add(target);
       this.controls.update();
     }
-    this.needsDrawing = true;
+    this.needsRendering = true;
     return true;
   }
 
@@ -131,7 +131,7 @@ export class RobotView {
     const distance = 500 * Math.max(1, (1.3 * clientHeight) / Math.max(1, clientWidth));
     this.camera.position.copy(new three.Vector3(-0.62, -0.62, 0.52).normalize().multiplyScalar(distance)).add(this.controls.target);
     this.controls.update();
-    this.needsDrawing = true;
+    this.needsRendering = true;
   }
 
   /** Replaces the shown robot by another model and its solids. */
@@ -187,31 +187,31 @@ export class RobotView {
       mesh.matrix.copy(lift.multiply(new three.Matrix4().fromArray(body.place)));
       mesh.matrixWorldNeedsUpdate = true;
     });
-    this.needsDrawing = true;
+    this.needsRendering = true;
   }
 
-  /** Places every mount by four numbers: x and y in mm, cosine and sine of its angle. */
+  /** Places every mount by four numbers of `places`: x and y in mm, cosine and sine of the mount's angle. */
   placeMounts(places: Float64Array): void {
     this.mounts.forEach((mount, index) => {
       const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * index, 4 * index + 4);
       mount.matrix.set(cos, -sin, 0, x, sin, cos, 0, y, 0, 0, 1, 0, 0, 0, 0, 1);
       mount.matrixWorldNeedsUpdate = true;
     });
-    this.needsDrawing = true;
+    this.needsRendering = true;
   }
 
   /** Returns true if a frame may be rendered now; to be called once per animation frame. */
-  mayDraw(): boolean {
-    return this.paintBudget.mayPaint();
+  mayRender(): boolean {
+    return this.paintBudget.mayRender();
   }
 
-  /** Renders a frame if something has changed and `mayDraw()` is true. `place` is the robot's place on the floor. */
-  draw(place: Place): void {
+  /** Renders a frame if something has changed and `mayRender()` is true. `place` is the robot's place on the floor. */
+  render(place: Place): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (!this.mayDraw() || width === 0 || height === 0) return;
+    if (!this.mayRender() || width === 0 || height === 0) return;
     const now = performance.now();
-    if (this.needsDrawing) this.changedAt = now;
-    // A still view is painted once more at full resolution.
+    if (this.needsRendering) this.changedAt = now;
+    // A still view is rendered once more at full resolution.
     const isStill = now - this.changedAt > STILL_MS;
     const ratio = Math.min(2, devicePixelRatio) * (isStill ? 1 : this.paintBudget.resolution);
     const size = this.renderer.getSize(new three.Vector2());
@@ -220,16 +220,16 @@ export class RobotView {
       this.renderer.setSize(width, height, false);
       this.camera.aspect = width / height;
       this.camera.updateProjectionMatrix();
-      this.needsDrawing = true;
+      this.needsRendering = true;
     }
-    if (!this.needsDrawing) return;
-    this.needsDrawing = false;
+    if (!this.needsRendering) return;
+    this.needsRendering = false;
     this.moveGrid(place);
     this.renderer.render(this.scene, this.camera);
-    this.paintBudget.notePicture(isStill);
+    this.paintBudget.noteFrame(isStill);
   }
 
-  /** Moves the floor's grid below the robot, which stays in the middle. */
+  /** Moves the floor's grid below the robot, which stays in the middle of the view. */
   private moveGrid({ x, y, heading }: Place): void {
     if (!this.grid) return;
     const turn = new three.Matrix4().makeRotationZ((-heading * Math.PI) / 180);
@@ -251,7 +251,7 @@ export class RobotView {
   }
 }
 
-/** The colours of bought bodies by their kinds; a standoff has that of the tubes, and all others are steel. */
+/** The colours of bought bodies by their kinds; a standoff has the colour of the tubes, and the others that of steel. */
 const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
   servo: '#4a6fa5',
   board: '#1d7f86',
@@ -262,7 +262,7 @@ const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
   fitting: '#8a6d4b',
 };
 
-/** Returns a body's colour: for a printed part that of its servo, as in the drawing, else that of its material. */
+/** Returns a body's colour: that of its servo for a printed part, as in the drawing, else that of its material. */
 function colourOf({ kind, servo }: BodyEntry): string {
   const { 'skin-edge': plate, tube, steel } = palette();
   if (kind === 'printed') return servo === null ? plate : servoColour(servo);

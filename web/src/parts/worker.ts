@@ -1,10 +1,11 @@
-// The web worker of the workshop: makes the robot's parts in WebAssembly. Throws a `Refused` if they cannot be made.
+// The web worker of the workshop, which makes the robot's parts in WebAssembly. Its functions throw a `Refused` if the
+// parts cannot be made.
 import { expose, transfer } from 'comlink';
 import { zipSync } from 'fflate';
 
 import { initSync, Parts } from '../../generated/parts';
 
-/** Progress of the making of a robot's files. */
+/** Progress of the stage in which a robot's files are: `done` of `total` steps. */
 export interface Progress {
   stage: 'prove' | 'make';
   done: number;
@@ -15,22 +16,22 @@ export interface Progress {
 let shownParts: Parts | null = null;
 
 /** Makes all files of a robot; returns their bytes by their paths. */
-function filesOf(parts: Parts, progress: (progress: Progress) => void): Record<string, Uint8Array> {
+function makeFiles(parts: Parts, onProgress: (progress: Progress) => void): Record<string, Uint8Array> {
   const filesByPath: Record<string, Uint8Array> = {};
   const fileCount = parts.entry().files;
   for (let index = 0; index < fileCount; index++) {
-    progress({ stage: 'make', done: index, total: fileCount });
+    onProgress({ stage: 'make', done: index, total: fileCount });
     for (const { path, bytes } of parts.files(index)) filesByPath[path] = bytes;
   }
   return filesByPath;
 }
 
-const isSame = (bytes: Uint8Array, otherBytes: Uint8Array | undefined) => bytes.length === otherBytes?.length && bytes.every((byte, index) => byte === otherBytes[index]);
+const areEqual = (bytes: Uint8Array, otherBytes: Uint8Array | undefined) => bytes.length === otherBytes?.length && bytes.every((byte, index) => byte === otherBytes[index]);
 
-const functions = {
+const api = {
   load: (module: WebAssembly.Module) => void initSync({ module }),
 
-  /** Makes the parts to show. */
+  /** Makes the parts to show; returns their model and their solids. */
   model(toml: string) {
     shownParts = null;
     shownParts = new Parts(toml);
@@ -42,29 +43,29 @@ const functions = {
   pose: (angles: number[], lags: number[]) => shownParts?.pose(angles, lags) ?? null,
 
   /**
-   * Proves that the parts of a robot fit; returns the least distance between two of them, mm, or null if no pair was
+   * Proves that the parts of a robot fit; returns the least distance between two parts, mm, or null if no pair was
    * checked.
    */
   fit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
 
   /**
-   * Proves that the parts fit, makes all files and packs them; if `previousToml` is a robot.toml, packs only files
-   * that differ from its files.
+   * Proves that the parts fit, makes all files and packs them. If `previousToml` is not null, packs only the files that
+   * differ from those of that robot.
    */
-  make(toml: string, previousToml: string | null, progress: (progress: Progress) => void) {
+  make(toml: string, previousToml: string | null, onProgress: (progress: Progress) => void) {
     const parts = new Parts(toml);
-    const leastMm = parts.prove((done, total) => progress({ stage: 'prove', done, total })) ?? null;
-    const files = filesOf(parts, progress);
+    const leastMm = parts.prove((done, total) => onProgress({ stage: 'prove', done, total })) ?? null;
+    const files = makeFiles(parts, onProgress);
     const count = Object.keys(files).length;
     if (previousToml !== null) {
-      const previousFiles = filesOf(new Parts(previousToml), progress);
-      for (const [path, bytes] of Object.entries(previousFiles)) if (isSame(bytes, files[path])) delete files[path];
+      const previousFiles = makeFiles(new Parts(previousToml), onProgress);
+      for (const [path, bytes] of Object.entries(previousFiles)) if (areEqual(bytes, files[path])) delete files[path];
     }
-    // A fixed date, so that the same files make the same archive.
+    // The date is fixed, so that equal files give equal archives.
     const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' }) as Uint8Array<ArrayBuffer>;
     return transfer({ zip, paths: Object.keys(files), count, least: leastMm }, [zip.buffer]);
   },
 };
 
-export type PartsFunctions = typeof functions;
-expose(functions);
+export type PartsWorkerApi = typeof api;
+expose(api);

@@ -1,42 +1,43 @@
-// Asks a worker for the robot's parts: solids, places at a pose, and all files as one archive.
+// The robot's parts, made by a worker: solids, their places at a pose, and all files as one archive.
 import { proxy, type Remote } from 'comlink';
 
-import type { Meeting, ModelEntry, Refused } from '../../generated/parts';
+import type { Meeting as Clash, ModelEntry, Refused } from '../../generated/parts';
 import { files } from '../files';
 import { Helper } from '../helper';
-import type { PartsFunctions, Progress } from './worker';
+import type { PartsWorkerApi, Progress } from './worker';
 
-export type { Meeting, Progress };
+export type { Clash, Progress };
 export type Model = ModelEntry;
 /** The triangles of a solid: the corners' coordinates in mm, and three corner indices for each triangle. */
 export type Solid = { corners: Float32Array; triangles: Uint32Array };
 /**
- * The archive with its paths, the number of all files of the robot, and the least proved distance between two parts,
- * mm.
+ * The archive of a robot's files with their paths, the number of all files of the robot, and the least proved distance
+ * between two parts, mm.
  */
-export type PartsArchive = ReturnType<PartsFunctions['make']>;
+export type PartsArchive = ReturnType<PartsWorkerApi['make']>;
 
 /** Thrown for a robot whose parts cannot be made; its message is for the user. */
 export class UnfitError extends Error {
-  readonly meeting: Meeting | null;
+  /** The two parts that overlap or come too close; null for another reason. */
+  readonly clash: Clash | null;
 
   constructor({ refused, meeting }: Refused) {
     super(refused);
-    this.meeting = meeting;
+    this.clash = meeting;
   }
 }
 
-/** A worker with the parts; what it refuses is thrown as an {@link UnfitError}. */
-class Workshop extends Helper<PartsFunctions> {
+/** A worker that makes parts; its refusal is thrown as an {@link UnfitError}. */
+class Workshop extends Helper<PartsWorkerApi> {
   constructor() {
     super(new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' }));
   }
 
   /** Loads the WebAssembly module, then calls a function of the worker. */
-  async loadAndAsk<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Promise<Answer> {
+  async loadAndCall<Result>(invoke: (parts: Remote<PartsWorkerApi>) => Promise<Result>): Promise<Result> {
     const module = await files.parts();
-    await this.ask((parts) => parts.load(module));
-    return this.ask(call).catch((error: Error | Refused) => {
+    await this.call((parts) => parts.load(module));
+    return this.call(invoke).catch((error: Error | Refused) => {
       throw 'refused' in error ? new UnfitError(error) : error;
     });
   }
@@ -44,7 +45,8 @@ class Workshop extends Helper<PartsFunctions> {
 
 /** A robot's solids and their places at a pose. */
 export class Solids {
-  private isAsking = false;
+  /** True while the worker computes a pose. */
+  private isBusy = false;
 
   private constructor(private readonly workshop: Workshop) {}
 
@@ -55,48 +57,49 @@ export class Solids {
   static async make(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
     const workshop = new Workshop();
     try {
-      const { model, solids } = await workshop.loadAndAsk((parts) => parts.model(toml));
+      const { model, solids } = await workshop.loadAndCall((parts) => parts.model(toml));
       return { solids: new Solids(workshop), model, meshes: solids };
     } catch (error) {
-      workshop.end();
+      workshop.terminate();
       throw error;
     }
   }
 
   /**
-   * Returns the places of all mounts; null if a loop does not close, or if the worker still computes an earlier pose.
+   * Returns the places of all mounts at the servos' `angles` and the legs' `lags`, deg; null if a loop does not close,
+   * or if the worker still computes an earlier pose.
    */
   async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
-    if (this.isAsking) return null;
-    this.isAsking = true;
-    return this.workshop.ask((parts) => parts.pose(angles, lags)).finally(() => (this.isAsking = false));
+    if (this.isBusy) return null;
+    this.isBusy = true;
+    return this.workshop.call((parts) => parts.pose(angles, lags)).finally(() => (this.isBusy = false));
   }
 
-  end(): void {
-    this.workshop.end();
+  dispose(): void {
+    this.workshop.terminate();
   }
 }
 
-/** An answer to come; `stop` ends the work without one. */
-interface Work<Answer> {
-  answer: Promise<Answer>;
-  stop: () => void;
+/** A running computation; `cancel` ends it, and then `result` never settles. */
+interface Job<Result> {
+  result: Promise<Result>;
+  cancel: () => void;
 }
 
-function startWork<Answer>(call: (parts: Remote<PartsFunctions>) => Promise<Answer>): Work<Answer> {
+function startJob<Result>(invoke: (parts: Remote<PartsWorkerApi>) => Promise<Result>): Job<Result> {
   const workshop = new Workshop();
-  return { answer: workshop.loadAndAsk(call).finally(() => workshop.end()), stop: () => workshop.end() };
+  return { result: workshop.loadAndCall(invoke).finally(() => workshop.terminate()), cancel: () => workshop.terminate() };
 }
 
 /**
- * Proves that the parts of a robot.toml fit; answers with the least distance between two, mm, null if no pair was
- * checked. Throws {@link UnfitError}.
+ * Proves that the parts of a robot.toml fit. Results in the least distance between two parts, mm, or null if no pair
+ * was checked; rejects with an {@link UnfitError} if they do not fit.
  */
-export const proveFit = (toml: string): Work<number | null> => startWork((parts) => parts.fit(toml));
+export const proveFit = (toml: string): Job<number | null> => startJob((parts) => parts.fit(toml));
 
 /**
- * Proves that the parts fit, makes all files and packs them; if `previousToml` is a robot.toml, packs only files that
- * differ from its files.
+ * Proves that the parts fit, makes all files and packs them. If `previousToml` is not null, packs only the files that
+ * differ from those of that robot.
  */
-export const makeArchive = (toml: string, previousToml: string | null, progress: (progress: Progress) => void): Work<PartsArchive> =>
-  startWork((parts) => parts.make(toml, previousToml, proxy(progress)));
+export const makeArchive = (toml: string, previousToml: string | null, onProgress: (progress: Progress) => void): Job<PartsArchive> =>
+  startJob((parts) => parts.make(toml, previousToml, proxy(onProgress)));

@@ -49,7 +49,7 @@ export class BoardGuide {
     this.calibration = guide.calibration;
   }
 
-  /** Reads the robot's calibration; nothing moves. Throws an error for the user. */
+  /** Reads the robot's calibration; nothing moves. Throws an error with a message for the user. */
   static async begin(session: Session): Promise<BoardGuide> {
     const console = new BoardConsole(session);
     const { Guide } = await loadBoard();
@@ -61,10 +61,10 @@ export class BoardGuide {
     return this.console.isCurrent;
   }
 
-  /** Runs an action, one at a time. Throws an error for the user. */
-  async run<T>(act: (guide: Guide) => Promise<T>): Promise<T> {
+  /** Runs an action, one at a time. Throws an error with a message for the user. */
+  async run<T>(action: (guide: Guide) => Promise<T>): Promise<T> {
     try {
-      return await act(this.guide);
+      return await action(this.guide);
     } finally {
       ({ calibration: this.calibration, isChanged: this.isChanged } = this.guide);
     }

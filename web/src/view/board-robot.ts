@@ -32,17 +32,16 @@ export class BoardRobot {
   private async update(): Promise<void> {
     const { session } = this;
     const { otherRobot } = session;
-    if (!session.isReal || !otherRobot) return this.troubles.say('other', null);
+    if (!session.isReal || !otherRobot) return this.troubles.setMessage('other', null);
     const knownRobot = await this.findByHash(otherRobot.hash);
     if (session.otherRobot?.hash !== otherRobot.hash) return;
     const message = `The ${session.link.name} has another robot, ${otherRobot.name}, and is drawn and predicted here as ${robotName(session)}.`;
-    if (!knownRobot) return this.troubles.say('other', `${message} This page does not know it: open its robot.toml in Build, or write this one.`);
-    this.troubles.say('other', message, { label: `Show ${otherRobot.name}`, act: () => this.showRobot(knownRobot) });
+    if (!knownRobot) return this.troubles.setMessage('other', `${message} This page does not know it: open its robot.toml in Build, or write this one.`);
+    this.troubles.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => this.showRobot(knownRobot) });
   }
 
   /**
-   * Finds the robot with a hash among the robots that the user has put aside and the page's files; null if none has
-   * it.
+   * Finds the robot with a hash among the robots that the user has put aside and the page's files; null if none has it.
    */
   private async findByHash(hash: string): Promise<KnownRobot | null> {
     const hasHash = (toml: string) => {

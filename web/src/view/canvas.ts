@@ -2,7 +2,7 @@
 
 /** A canvas that is ready for drawing. */
 export interface Surface {
-  pen: CanvasRenderingContext2D;
+  context: CanvasRenderingContext2D;
   /** Width, CSS pixels. */
   width: number;
   height: number;
@@ -12,7 +12,7 @@ export interface Surface {
  * Prepares a canvas for drawing in CSS pixels. Returns null while it is not shown. Clears the canvas, unless it is
  * opaque, which saves blending: then the caller must fill it.
  */
-export function surface(canvas: HTMLCanvasElement, isOpaque = false): Surface | null {
+export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false): Surface | null {
   const { clientWidth: width, clientHeight: height } = canvas;
   if (width === 0 || height === 0) return null;
   const scale = devicePixelRatio;
@@ -21,27 +21,27 @@ export function surface(canvas: HTMLCanvasElement, isOpaque = false): Surface | 
     canvas.width = pixelWidth;
     canvas.height = pixelHeight;
   }
-  const pen = canvas.getContext('2d', { alpha: !isOpaque });
-  if (!pen) return null;
-  pen.setTransform(scale, 0, 0, scale, 0, 0);
-  if (!isOpaque) pen.clearRect(0, 0, width, height);
-  return { pen, width, height };
+  const context = canvas.getContext('2d', { alpha: !isOpaque });
+  if (!context) return null;
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  if (!isOpaque) context.clearRect(0, 0, width, height);
+  return { context, width, height };
 }
 
 /** Adds straight lines through points to the path. */
-export function polyline(pen: CanvasRenderingContext2D, ...[[x, y], ...others]: [[number, number], ...[number, number][]]): void {
-  pen.moveTo(x, y);
-  for (const point of others) pen.lineTo(...point);
+export function polyline(context: CanvasRenderingContext2D, ...[[x, y], ...others]: [[number, number], ...[number, number][]]): void {
+  context.moveTo(x, y);
+  for (const point of others) context.lineTo(...point);
 }
 
 /**
  * Adds a circle to the path, as two half circles: with the y axis upward, the context that writes SVG reverses the
  * direction of an arc, and a half circle looks the same in both directions.
  */
-export function circle(pen: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
-  pen.moveTo(x + radius, y);
-  pen.arc(x, y, radius, 0, Math.PI);
-  pen.arc(x, y, radius, Math.PI, 2 * Math.PI);
+export function circle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.moveTo(x + radius, y);
+  context.arc(x, y, radius, 0, Math.PI);
+  context.arc(x, y, radius, Math.PI, 2 * Math.PI);
 }
 
 /** Returns an element of index.html. */

@@ -1,7 +1,7 @@
 // The overlay on the camera's picture: the tags, and the robot's path and heading.
 import type { Pixel } from '../../generated/measure';
 import type { TagTracker } from '../measure/tag-tracker';
-import { surface } from './canvas';
+import { prepareSurface } from './canvas';
 import { palette } from './palette';
 
 /** Length of the heading's arrow relative to the size of the tag on the robot's deck. */
@@ -12,20 +12,20 @@ const ARROW_LENGTH = 1.6;
  * `object-fit: contain` does.
  */
 export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): void {
-  const view = surface(canvas);
+  const view = prepareSurface(canvas);
   if (!view) return;
-  const { pen, width, height } = view;
+  const { context, width, height } = view;
   const [pictureWidth, pictureHeight] = tracker.size;
   const scale = Math.min(width / pictureWidth, height / pictureHeight);
-  pen.translate((width - scale * pictureWidth) / 2, (height - scale * pictureHeight) / 2);
+  context.translate((width - scale * pictureWidth) / 2, (height - scale * pictureHeight) / 2);
   const toCanvas = ([x, y]: Pixel): Pixel => [scale * x, scale * y];
   const { accent, a2 } = palette();
   const drawLine = (points: Pixel[], colour: string, lineWidth: number) => {
-    pen.beginPath();
-    for (const [i, point] of points.entries()) pen[i === 0 ? 'moveTo' : 'lineTo'](...toCanvas(point));
-    pen.strokeStyle = colour;
-    pen.lineWidth = lineWidth;
-    pen.stroke();
+    context.beginPath();
+    for (const [i, point] of points.entries()) context[i === 0 ? 'moveTo' : 'lineTo'](...toCanvas(point));
+    context.strokeStyle = colour;
+    context.lineWidth = lineWidth;
+    context.stroke();
   };
   drawLine(tracker.path, a2, 2);
   for (const { corners } of tracker.tags) drawLine([...corners, corners[0], corners[1]], accent, 3);

@@ -58,15 +58,15 @@ export class FasterView {
     if (this.toml === '' || this.session.toml === this.toml) return;
     this.toml = '';
     this.resultBox.hidden = true;
-    if (!this.search) return this.say('');
+    if (!this.search) return this.setMessage('');
     this.search.cancel();
     this.endSearch();
-    this.say('The robot has changed, so the search for the previous one has ended.');
+    this.setMessage('The robot has changed, so the search for the previous one has ended.');
   }
 
   private begin(): void {
     const bars = this.editor.gait();
-    if (!bars) return this.say('There is no gait to start from.');
+    if (!bars) return this.setMessage('There is no gait to start from.');
     const { toml, floor, servos } = this.session;
     this.toml = toml;
     this.reference = bars;
@@ -75,7 +75,7 @@ export class FasterView {
     this.startButton.textContent = BUTTON_LABELS.stop;
     this.progressBar.removeAttribute('value');
     this.progressBar.hidden = false;
-    this.say('Looking for the widest stride that the limits allow…');
+    this.setMessage('Looking for the widest stride that the limits allow…');
     this.module ??= files.tune();
     // A failed download is tried again next time.
     this.module.catch(() => (this.module = null));
@@ -88,13 +88,13 @@ export class FasterView {
         this.referenceTrial = report.referenceTrial;
         this.gaitCount = this.progressBar.max = report.all;
         this.progressBar.value = 0;
-        return this.say(`Trying ${report.all} gaits whose servos turn at most ${report.rate.toFixed(0)} °/s…`);
+        return this.setMessage(`Trying ${report.all} gaits whose servos turn at most ${report.rate.toFixed(0)} °/s…`);
       case 'progress':
         this.progressBar.value = report.done;
         return;
       case 'best':
         if (report.best.better) this.show(report.best);
-        return this.say(report.best.better ? `So far ${percent(report.best)} faster.` : 'None of the gaits so far is faster.');
+        return this.setMessage(report.best.better ? `So far ${percent(report.best)} faster.` : 'None of the gaits so far is faster.');
       case 'end':
         this.showEnd(report);
     }
@@ -102,17 +102,17 @@ export class FasterView {
 
   private showEnd(report: SearchReport & { kind: 'end' }): void {
     this.endSearch();
-    if ('refused' in report) return this.say(`This gait cannot be made faster: ${report.refused}.`);
+    if ('refused' in report) return this.setMessage(`This gait cannot be made faster: ${report.refused}.`);
     const { best, done } = report;
     const stopText = done < this.gaitCount ? `Stopped after ${done} of ${this.gaitCount} gaits. ` : '';
     if (best?.better) {
       this.show(best);
       const { comparison } = best;
-      return this.say(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors, and ${percent(best)} faster where only 5 % are slower. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
+      return this.setMessage(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors, and ${percent(best)} faster where only 5 % are slower. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
     }
     this.resultBox.hidden = true;
-    if (done === 0) return this.say(`${stopText}Nothing was tried yet.`);
-    this.say(`${stopText}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
+    if (done === 0) return this.setMessage(`${stopText}Nothing was tried yet.`);
+    this.setMessage(`${stopText}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
   }
 
   /** Ends the search; the button starts a new one. */
@@ -155,7 +155,7 @@ export class FasterView {
     await this.editor.compare(reference, best.bars, element('faster-ways'));
   }
 
-  private readonly say = (text: string): void => setText(this.message, text);
+  private readonly setMessage = (text: string): void => setText(this.message, text);
 }
 
 const percent = ({ gain }: BestGait) => `${(100 * gain).toFixed(0)} %`;

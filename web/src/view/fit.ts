@@ -1,26 +1,26 @@
-// Checks that the robot's parts fit after a change of lengths, also while a length is dragged. The proof runs in a
-// web worker. If two parts come too close, they are shown in red in 3D, and the page searches for the nearest lengths
-// whose parts fit.
-import type { Meeting } from '../parts/workshop';
+// Checks that the robot's parts fit after a change of lengths, also while a length is dragged. The proof runs in a web
+// worker. Two parts that come too close are shown in red in 3D, and the page searches for the nearest lengths whose
+// parts fit.
+import type { Clash } from '../parts/workshop';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
 import { element } from './canvas';
 import type { PartsView } from './parts';
 
-/** Time without a further change until the parts are made, ms: dragging a joint makes many changes. */
+/** Delay from the last change to the check, ms, since dragging a joint makes many changes. */
 const CHECK_DELAY_MS = 400;
-/** Step of the lengths that are tried, mm. */
+/** Resolution of the lengths that are tried, mm. */
 const STEP_MM = 0.5;
 
 /** Lengths by their keys, mm. */
 type Lengths = Map<string, number>;
 
-/** Checks in workers, which end with the next change. */
-interface Work {
+/** A check of parts, which the next change cancels. */
+interface Check {
   isOver: boolean;
-  /** The functions that end its workers. */
-  stops: Set<() => void>;
+  /** The functions that cancel its proofs, each in a worker of its own. */
+  cancels: Set<() => void>;
 }
 
 /** A request for the printable values of lengths that change together, within a range. */
@@ -34,11 +34,11 @@ export class FitView {
   private readonly message = element('fit-said');
   private readonly useButton = element<HTMLButtonElement>('fit-use');
   private readonly whereButton = element<HTMLButtonElement>('fit-where');
-  /** The last lengths whose parts fit, of robots from the same file. */
+  /** The last lengths, of a robot from the same file, whose parts fit. */
   private fittingLengths: Lengths = new Map();
   private rangeRequest: RangeRequest | null = null;
   private timer = 0;
-  private work: Work = { isOver: true, stops: new Set() };
+  private check: Check = { isOver: true, cancels: new Set() };
 
   constructor(
     private readonly session: Session,
@@ -48,99 +48,100 @@ export class FitView {
     session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
 
-  /** Takes the lengths of the session's robot. */
+  /** Checks the parts of the session's robot, whose lengths these are. */
   showRobot(lengths: Length[]): void {
     const robotLengths: Lengths = new Map(lengths.map(({ key, value }) => [key, value]));
     this.rangeRequest = null;
-    this.cancelWork();
+    this.cancelCheck();
     this.parts.showRobot();
     const { file, toml, original } = this.session;
     // Not checked: a robot chosen from the list (whose file name is empty while it loads), an unchanged robot, and
     // changes made outside the room Build.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fittingLengths = robotLengths;
     const changedLengths = [...robotLengths].filter(([key, value]) => this.fittingLengths.get(key) !== value);
-    if (changedLengths.length > 0) this.schedule((work) => this.checkRobot(robotLengths, new Map(changedLengths), work));
+    if (changedLengths.length > 0) this.schedule((check) => this.checkRobot(robotLengths, new Map(changedLengths), check));
   }
 
-  /** Takes the robot.toml of lengths that are being dragged; null if the lengths are refused. */
+  /** Checks the parts of a robot.toml whose lengths are being dragged; null if the lengths are refused. */
   checkDragged(toml: string | null): void {
-    this.cancelWork();
+    this.cancelCheck();
     if (toml === null) return;
-    this.schedule(async (work) => {
+    this.schedule(async (check) => {
       this.parts.show3d(toml);
-      await this.proveAndReport(toml, work);
+      await this.proveAndReport(toml, check);
     });
   }
 
   /**
-   * Searches for the least and the greatest value of the lengths `keys` with which the parts fit, once the robot is
-   * known to fit.
+   * Searches `range` for the least and the greatest value of the lengths `keys` with which the parts fit, once the
+   * robot's own parts are known to fit.
    */
   findRange(keys: string[], range: [number, number], show: RangeRequest['show']): void {
     this.rangeRequest = { keys, range, show };
     if (this.isKnownToFit) {
-      this.cancelWork();
-      this.schedule((work) => this.searchRange(work));
+      this.cancelCheck();
+      this.schedule((check) => this.searchRange(check));
     }
   }
 
+  /** True if the parts of the session's robot are known to fit. */
   private get isKnownToFit(): boolean {
     return this.session.description.lengths.every(({ key, value }) => this.fittingLengths.get(key) === value);
   }
 
-  /** Cancels the scheduled or running work, and clears the message. */
-  private cancelWork(): void {
+  /** Cancels the scheduled or running check, and clears the message. */
+  private cancelCheck(): void {
     clearTimeout(this.timer);
-    this.work.isOver = true;
-    for (const stop of this.work.stops) stop();
-    this.say('', null);
+    this.check.isOver = true;
+    for (const cancel of this.check.cancels) cancel();
+    this.setMessage('', null);
   }
 
-  private schedule(act: (work: Work) => Promise<void>): void {
-    const work: Work = { isOver: false, stops: new Set() };
-    this.work = work;
-    const run = () => act(work).catch((error: unknown) => this.say(`The parts could not be checked: ${messageOf(error)}.`, null));
-    this.timer = setTimeout(() => void run(), CHECK_DELAY_MS);
+  private schedule(run: (check: Check) => Promise<void>): void {
+    const check: Check = { isOver: false, cancels: new Set() };
+    this.check = check;
+    const runAndReport = () => run(check).catch((error: unknown) => this.setMessage(`The parts could not be checked: ${messageOf(error)}.`, null));
+    this.timer = setTimeout(() => void runAndReport(), CHECK_DELAY_MS);
   }
 
   /** Proves that a robot's parts fit, and shows the result; returns true if they do. */
-  private async proveAndReport(toml: string, work: Work): Promise<boolean> {
-    this.say('Checking that the parts fit…', null);
-    const result = await this.proveParts(toml, work);
-    if (work.isOver) return false;
-    if (result instanceof Error) this.say(refusalOf(result), result.meeting);
-    else this.say(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
+  private async proveAndReport(toml: string, check: Check): Promise<boolean> {
+    this.setMessage('Checking that the parts fit…', null);
+    const result = await this.proveParts(toml, check);
+    if (check.isOver) return false;
+    if (result instanceof Error) this.setMessage(refusalOf(result), result.clash);
+    else this.setMessage(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
     return !(result instanceof Error);
   }
 
   /**
-   * Returns the least distance between two parts, mm, null if it is unknown, or the error that says why they do not
-   * fit.
+   * Returns the least distance between two parts, mm, null if it is unknown, or the error with the reason why the parts
+   * do not fit.
    */
-  private async proveParts(toml: string, work: Work) {
+  private async proveParts(toml: string, check: Check) {
     const { proveFit, UnfitError } = await import('../parts/workshop');
-    if (work.isOver) return null;
-    const { answer, stop } = proveFit(toml);
-    work.stops.add(stop);
-    return answer
+    if (check.isOver) return null;
+    const { result, cancel } = proveFit(toml);
+    check.cancels.add(cancel);
+    return result
       .catch((error: unknown) => {
         if (error instanceof UnfitError) return error;
         throw error;
       })
-      .finally(() => work.stops.delete(stop));
+      .finally(() => check.cancels.delete(cancel));
   }
 
-  private async checkRobot(robotLengths: Lengths, changedLengths: Lengths, work: Work): Promise<void> {
+  private async checkRobot(robotLengths: Lengths, changedLengths: Lengths, check: Check): Promise<void> {
     const { toml } = this.session;
-    if (await this.proveAndReport(toml, work)) {
+    if (await this.proveAndReport(toml, check)) {
       this.fittingLengths = robotLengths;
-      return this.searchRange(work);
+      return this.searchRange(check);
     }
-    if (work.isOver) return;
+    if (check.isOver) return;
     const refusalText = this.message.textContent ?? '';
     this.message.textContent = `${refusalText} Looking for the nearest that can…`;
-    const nearest = await this.findNearest(changedLengths, work);
-    if (work.isOver) return;
+    const nearest = await this.findNearest(changedLengths, check);
+    if (check.isOver) return;
     this.message.textContent = refusalText;
     const { lengths } = this.session.description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
@@ -149,27 +150,27 @@ export class FitView {
     this.useButton.hidden = false;
   }
 
-  /** Searches for the requested range, if there is a request. */
-  private async searchRange(work: Work): Promise<void> {
+  /** Searches for the requested range of printable values, if there is a request. */
+  private async searchRange(check: Check): Promise<void> {
     const { rangeRequest } = this;
     if (!rangeRequest) return;
     const { keys, range, show } = rangeRequest;
     show(null, 'Looking for the shortest and the longest that can be printed…');
     const findLimit = async (wantedValue: number) => {
-      const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, wantedValue])), work, true);
+      const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, wantedValue])), check, true);
       return lengths.get(keys[0] ?? '') ?? wantedValue;
     };
     const [shortest, longest] = await Promise.all([findLimit(range[0]), findLimit(range[1])]);
-    if (work.isOver) return;
+    if (check.isOver) return;
     const { unit } = this.session.description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
     show([shortest, longest], `Can be printed from ${shortest} to ${longest} ${unit}.`);
   }
 
   /**
    * Returns the lengths nearest to the wanted ones whose parts fit: bisects between the last lengths that fit and the
-   * wanted ones, to within one step. If `triesWantedFirst`, tries the wanted lengths first, since they may fit.
+   * wanted ones, down to `STEP_MM`. If `triesWantedFirst`, tries the wanted lengths first, since they may fit.
    */
-  private async findNearest(wantedLengths: Lengths, work: Work, triesWantedFirst = false): Promise<{ lengths: Lengths; text: string }> {
+  private async findNearest(wantedLengths: Lengths, check: Check, triesWantedFirst = false): Promise<{ lengths: Lengths; text: string }> {
     const { toml } = this.session;
     const lengthsAt = (share: number): Lengths =>
       new Map([...wantedLengths].map(([key, to]) => {
@@ -181,7 +182,7 @@ export class FitView {
       const { text, refusal } = Robot.lengths(toml, [...lengths], false);
       return { lengths, text, isAccepted: refusal === null };
     };
-    const partsFit = async ({ text, isAccepted }: ReturnType<typeof robotAt>) => isAccepted && !((await this.proveParts(text, work)) instanceof Error);
+    const partsFit = async ({ text, isAccepted }: ReturnType<typeof robotAt>) => isAccepted && !((await this.proveParts(text, check)) instanceof Error);
     let best = robotAt(0);
     if (triesWantedFirst) {
       const wantedRobot = robotAt(1);
@@ -189,7 +190,7 @@ export class FitView {
     }
     let [low, high] = [0, 1];
     const longestChange = Math.max(...[...wantedLengths].map(([key, to]) => Math.abs(to - (this.fittingLengths.get(key) ?? to))));
-    while ((high - low) * longestChange > STEP_MM && !work.isOver) {
+    while ((high - low) * longestChange > STEP_MM && !check.isOver) {
       const middleShare = (low + high) / 2;
       const candidate = robotAt(middleShare);
       if (await partsFit(candidate)) [low, best] = [middleShare, candidate];
@@ -198,19 +199,19 @@ export class FitView {
     return best;
   }
 
-  private say(text: string, meeting: Meeting | null): void {
+  private setMessage(text: string, clash: Clash | null): void {
     element('fit').hidden = text === '';
     this.message.textContent = text;
     this.useButton.hidden = true;
-    this.whereButton.hidden = meeting === null;
-    this.parts.showMeeting(meeting);
+    this.whereButton.hidden = clash === null;
+    this.parts.showClash(clash);
   }
 }
 
-/** Returns the message that names the two parts that come too close, or else what cannot be made. */
-function refusalOf({ message, meeting }: { message: string; meeting: Meeting | null }): string {
-  if (!meeting) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
-  const { first, second, mm } = meeting;
+/** Returns the message that names the two parts that come too close, or else the reason why parts cannot be made. */
+function refusalOf({ message, clash }: { message: string; clash: Clash | null }): string {
+  if (!clash) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
+  const { first, second, mm } = clash;
   const distanceText = mm < 0 ? `would overlap by ${(-mm).toFixed(2)} mm` : `would come as near as ${mm.toFixed(2)} mm`;
   return `These lengths cannot be printed: ${first} and ${second} ${distanceText}.`;
 }

@@ -1,6 +1,6 @@
 // The floor that the lizard walks on, with pan and zoom by pointer, wheel, fingers or keys.
 import type { Frame, Place, Plate } from '../robot';
-import { circle, element, polyline, surface } from './canvas';
+import { circle, element, polyline, prepareSurface } from './canvas';
 import { drawLizard } from './lizard';
 import { onPaletteChange, palette } from './palette';
 
@@ -130,13 +130,13 @@ export class Floor {
     const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
     const state = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
     if (state === this.paintedState && !this.paintsAlways) return;
-    const area = surface(this.canvas, true);
+    const area = prepareSurface(this.canvas, true);
     if (!area) return;
-    const { pen } = area;
-    const label = this.paint(pen, width, height);
-    pen.fillStyle = palette().ink;
-    pen.font = '12px system-ui, sans-serif';
-    pen.fillText(label.text, label.x, label.y);
+    const { context } = area;
+    const label = this.paint(context, width, height);
+    context.fillStyle = palette().ink;
+    context.font = '12px system-ui, sans-serif';
+    context.fillText(label.text, label.x, label.y);
     this.paintedState = state;
   }
 
@@ -161,78 +161,78 @@ export class Floor {
    * Draws the last picture with another context in CSS pixels, for SVG. Returns the label of the scale bar, which the
    * caller adds.
    */
-  redraw(pen: CanvasRenderingContext2D): Label {
+  redraw(context: CanvasRenderingContext2D): Label {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    return this.paint(pen, width, height);
+    return this.paint(context, width, height);
   }
 
-  private paint(pen: CanvasRenderingContext2D, width: number, height: number): Label {
+  private paint(context: CanvasRenderingContext2D, width: number, height: number): Label {
     const [plate, frame, secondFrame] = this.lastDrawn ?? [null, null, null];
-    pen.fillStyle = palette().floor;
-    pen.fillRect(0, 0, width, height);
-    pen.save();
-    pen.translate(width / 2, height / 2);
-    pen.scale(this.zoom, -this.zoom);
-    pen.translate(-this.centre.x, -this.centre.y);
-    this.drawGrid(pen, width, height);
+    context.fillStyle = palette().floor;
+    context.fillRect(0, 0, width, height);
+    context.save();
+    context.translate(width / 2, height / 2);
+    context.scale(this.zoom, -this.zoom);
+    context.translate(-this.centre.x, -this.centre.y);
+    this.drawGrid(context, width, height);
     const robots: [number, Frame | null][] = secondFrame ? [[0, frame], [SECOND_ROBOT_OFFSET_MM, secondFrame]] : [[0, frame]];
     robots.forEach(([shift, robot], index) => {
-      pen.save();
-      pen.translate(shift, 0);
-      this.drawTrack(pen, this.tracks[index] ?? []);
+      context.save();
+      context.translate(shift, 0);
+      this.drawTrack(context, this.tracks[index] ?? []);
       if (plate && robot?.scene) {
         const { x, y, heading } = robot.place;
-        pen.translate(x, y);
-        pen.rotate((heading * Math.PI) / 180);
-        drawLizard(pen, plate, robot.scene, robot.slides);
+        context.translate(x, y);
+        context.rotate((heading * Math.PI) / 180);
+        drawLizard(context, plate, robot.scene, robot.slides);
       }
-      pen.restore();
+      context.restore();
     });
-    pen.restore();
-    return this.drawRuler(pen, height);
+    context.restore();
+    return this.drawRuler(context, height);
   }
 
-  private drawGrid(pen: CanvasRenderingContext2D, width: number, height: number): void {
+  private drawGrid(context: CanvasRenderingContext2D, width: number, height: number): void {
     const spacing = this.zoom < 0.4 ? GRID_SPACING_MM * 5 : GRID_SPACING_MM;
     const [halfWidth, halfHeight] = [width / 2 / this.zoom, height / 2 / this.zoom];
     const { x, y } = this.centre;
-    pen.strokeStyle = palette().grid;
-    pen.lineWidth = 1 / this.zoom;
-    pen.beginPath();
+    context.strokeStyle = palette().grid;
+    context.lineWidth = 1 / this.zoom;
+    context.beginPath();
     for (let lineX = Math.ceil((x - halfWidth) / spacing) * spacing; lineX <= x + halfWidth; lineX += spacing) {
-      polyline(pen, [lineX, y - halfHeight], [lineX, y + halfHeight]);
+      polyline(context, [lineX, y - halfHeight], [lineX, y + halfHeight]);
     }
     for (let lineY = Math.ceil((y - halfHeight) / spacing) * spacing; lineY <= y + halfHeight; lineY += spacing) {
-      polyline(pen, [x - halfWidth, lineY], [x + halfWidth, lineY]);
+      polyline(context, [x - halfWidth, lineY], [x + halfWidth, lineY]);
     }
-    pen.stroke();
+    context.stroke();
   }
 
-  private drawTrack(pen: CanvasRenderingContext2D, track: { x: number; y: number }[]): void {
-    pen.strokeStyle = palette().track;
-    pen.lineWidth = 2.5 / this.zoom;
-    pen.lineJoin = 'round';
-    pen.beginPath();
-    track.forEach(({ x, y }, n) => (n === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
-    pen.stroke();
+  private drawTrack(context: CanvasRenderingContext2D, track: { x: number; y: number }[]): void {
+    context.strokeStyle = palette().track;
+    context.lineWidth = 2.5 / this.zoom;
+    context.lineJoin = 'round';
+    context.beginPath();
+    track.forEach(({ x, y }, n) => (n === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
+    context.stroke();
     // Marks the start.
-    pen.beginPath();
-    circle(pen, 0, 0, 4);
-    polyline(pen, [-9, 0], [9, 0]);
-    polyline(pen, [0, -9], [0, 9]);
-    pen.stroke();
+    context.beginPath();
+    circle(context, 0, 0, 4);
+    polyline(context, [-9, 0], [9, 0]);
+    polyline(context, [0, -9], [0, 9]);
+    context.stroke();
   }
 
-  private drawRuler(pen: CanvasRenderingContext2D, height: number): Label {
+  private drawRuler(context: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
     // The bar stands to the right of the on-screen stick.
     const [x, y] = [124, height - 18];
-    pen.strokeStyle = palette().ink;
-    pen.lineWidth = 1.5;
-    pen.beginPath();
+    context.strokeStyle = palette().ink;
+    context.lineWidth = 1.5;
+    context.beginPath();
     const endX = x + length * this.zoom;
-    polyline(pen, [x, y - 4], [x, y], [endX, y], [endX, y - 4]);
-    pen.stroke();
+    polyline(context, [x, y - 4], [x, y], [endX, y], [endX, y - 4]);
+    context.stroke();
     return { text: `${length} mm`, x: x + 4, y: y - 5 };
   }
 

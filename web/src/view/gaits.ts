@@ -4,7 +4,7 @@ import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { type GaitEditor, FasterView } from './faster';
-import { make, setAttributes, shape, tableRow } from './make';
+import { make, setAttributes, makeSvg, tableRow } from './make';
 import { setUpNumberInput, putNumber, type Range } from './number';
 import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
@@ -90,7 +90,7 @@ export class GaitsView {
   /** Starts to edit a copy of the chosen gait of the robot. */
   private editTemplate(): void {
     const bars = this.templateList.value === '' ? null : this.session.robot.bars(Number(this.templateList.value));
-    if (!bars) return this.trial.say('This robot has no gait of four bars to start from.');
+    if (!bars) return this.trial.setMessage('This robot has no gait of four bars to start from.');
     this.gait = { ...bars, name: this.nameInput.value || 'mine' };
     this.showGait();
     this.trial.predict();
@@ -121,8 +121,8 @@ export class GaitsView {
 
   /** Makes a leg's bar, the bar's handle and the leg's two number inputs. */
   private addLeg(leg: number): void {
-    const bar = this.circle.appendChild(shape('path', { class: `bar a${leg + 1}` }));
-    const handle = this.circle.appendChild(shape('circle', { class: `end a${leg + 1}`, r: 6 }));
+    const bar = this.circle.appendChild(makeSvg('path', { class: `bar a${leg + 1}` }));
+    const handle = this.circle.appendChild(makeSvg('circle', { class: `end a${leg + 1}`, r: 6 }));
     this.bars.push(bar);
     this.handles.push(handle);
     this.addDragHandler(bar, (cycles, firstGait) => this.setLegValue('start', leg, roundTo(wrapPhase((firstGait.start[leg] ?? 0) + cycles), 0.005)));

@@ -32,7 +32,7 @@ export class Lengths {
         input.removeAttribute('aria-invalid');
       }
     }
-    this.say('');
+    this.setMessage('');
   }
 
   private buildInputs(lengths: Length[]): void {
@@ -63,17 +63,17 @@ export class Lengths {
       lengthInput.value = String(length.value);
       lengthInput.setAttribute('aria-invalid', 'true');
     }
-    this.say(describeRefusal(`${value} ${refusedLengths[0]?.unit}`, edits, refusal, lengths));
+    this.setMessage(describeRefusal(`${value} ${refusedLengths[0]?.unit}`, edits, refusal, lengths));
     this.offerValidLengths(edits);
   }
 
   private download(): void {
     const { toml, floor } = this.session;
     const refusal = downloadRobot(toml, floor);
-    if (refusal) this.say(`This robot.toml lacks the settings of Legs, feet and floor: ${refusal.refused}`);
+    if (refusal) this.setMessage(`This robot.toml lacks the settings of Legs, feet and floor: ${refusal.refused}`);
   }
 
-  private say(message: string): void {
+  private setMessage(message: string): void {
     showMessage(this.refusalText, message);
     showOffers(null, this.session);
   }

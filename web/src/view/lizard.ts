@@ -9,26 +9,26 @@ const RIM_WIDTH_MM = 0.6;
 /** Slide in one frame beyond which a foot counts as slipping. */
 const SLIP_LIMIT_MM = 0.3;
 
-type Pen = CanvasRenderingContext2D;
+type Context = CanvasRenderingContext2D;
 
-function drawBar(pen: Pen, from: Point, to: Point, colour: string, widthMm: number): void {
-  pen.strokeStyle = colour;
-  pen.lineWidth = widthMm;
-  pen.lineCap = 'round';
-  pen.beginPath();
-  polyline(pen, from, to);
-  pen.stroke();
+function drawBar(context: Context, from: Point, to: Point, colour: string, widthMm: number): void {
+  context.strokeStyle = colour;
+  context.lineWidth = widthMm;
+  context.lineCap = 'round';
+  context.beginPath();
+  polyline(context, from, to);
+  context.stroke();
 }
 
-function drawDisc(pen: Pen, [x, y]: Point, radiusMm: number, fill: string, edge?: string): void {
-  pen.fillStyle = fill;
-  pen.beginPath();
-  circle(pen, x, y, radiusMm);
-  pen.fill();
+function drawDisc(context: Context, [x, y]: Point, radiusMm: number, fill: string, edge?: string): void {
+  context.fillStyle = fill;
+  context.beginPath();
+  circle(context, x, y, radiusMm);
+  context.fill();
   if (edge === undefined) return;
-  pen.strokeStyle = edge;
-  pen.lineWidth = 0.8;
-  pen.stroke();
+  context.strokeStyle = edge;
+  context.lineWidth = 0.8;
+  context.stroke();
 }
 
 /** Number of turns of a drawn spring. */
@@ -37,7 +37,7 @@ const SPRING_TURNS = 5;
 const SPRING_HALF_WIDTH_MM = 2.4;
 
 /** Draws a spring between two hooks. */
-function drawSpring(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
+function drawSpring(context: Context, [x1, y1]: Point, [x2, y2]: Point): void {
   const length = Math.hypot(x2 - x1, y2 - y1);
   if (length < 1) return;
   const [direction, normal] = [[(x2 - x1) / length, (y2 - y1) / length], [(y1 - y2) / length, (x2 - x1) / length]];
@@ -45,128 +45,128 @@ function drawSpring(pen: Pen, [x1, y1]: Point, [x2, y2]: Point): void {
     x1 + direction[0] * share * length + normal[0] * offset,
     y1 + direction[1] * share * length + normal[1] * offset,
   ];
-  pen.strokeStyle = palette().steel;
-  pen.lineWidth = 0.9;
-  pen.lineJoin = 'round';
-  pen.beginPath();
+  context.strokeStyle = palette().steel;
+  context.lineWidth = 0.9;
+  context.lineJoin = 'round';
+  context.beginPath();
   const windings = Array.from({ length: 2 * SPRING_TURNS }, (_, n) => pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH_MM : -SPRING_HALF_WIDTH_MM));
-  polyline(pen, [x1, y1], pointAt(0.12, 0), ...windings, pointAt(0.88, 0), [x2, y2]);
-  pen.stroke();
+  polyline(context, [x1, y1], pointAt(0.12, 0), ...windings, pointAt(0.88, 0), [x2, y2]);
+  context.stroke();
 }
 
 /** Draws the outline of a lizard from the head's end point to the tail's. */
-function drawSkin(pen: Pen, scene: Scene): void {
+function drawSkin(context: Context, scene: Scene): void {
   const [[hx, hy], [tx, ty]] = scene.points;
   const backY = Math.max(...scene.shafts.map(([, y]) => y));
   const neckY = backY + 16;
   const flankY = backY * 0.74;
-  pen.beginPath();
-  pen.moveTo(hx, hy + 30);
-  pen.bezierCurveTo(hx + 18, hy + 30, hx + 27, hy + 2, 27, neckY);
-  pen.bezierCurveTo(44, flankY, 44, -flankY, 27, -neckY);
-  pen.bezierCurveTo(tx + 22, ty, tx + 6, ty - 6, tx + 3, ty - 40);
-  pen.lineTo(tx - 3, ty - 40);
-  pen.bezierCurveTo(tx - 6, ty - 6, tx - 22, ty, -27, -neckY);
-  pen.bezierCurveTo(-44, -flankY, -44, flankY, -27, neckY);
-  pen.bezierCurveTo(hx - 27, hy + 2, hx - 18, hy + 30, hx, hy + 30);
-  pen.fillStyle = palette().skin;
-  pen.strokeStyle = palette()['skin-edge'];
-  pen.lineWidth = 1;
-  pen.fill();
-  pen.stroke();
-  for (const eyeX of [-9, 9]) drawDisc(pen, [hx + eyeX, hy + 12], 2.3, palette().ink);
+  context.beginPath();
+  context.moveTo(hx, hy + 30);
+  context.bezierCurveTo(hx + 18, hy + 30, hx + 27, hy + 2, 27, neckY);
+  context.bezierCurveTo(44, flankY, 44, -flankY, 27, -neckY);
+  context.bezierCurveTo(tx + 22, ty, tx + 6, ty - 6, tx + 3, ty - 40);
+  context.lineTo(tx - 3, ty - 40);
+  context.bezierCurveTo(tx - 6, ty - 6, tx - 22, ty, -27, -neckY);
+  context.bezierCurveTo(-44, -flankY, -44, flankY, -27, neckY);
+  context.bezierCurveTo(hx - 27, hy + 2, hx - 18, hy + 30, hx, hy + 30);
+  context.fillStyle = palette().skin;
+  context.strokeStyle = palette()['skin-edge'];
+  context.lineWidth = 1;
+  context.fill();
+  context.stroke();
+  for (const eyeX of [-9, 9]) drawDisc(context, [hx + eyeX, hy + 12], 2.3, palette().ink);
 }
 
 const SERVOS = [0, 1, 2, 3];
 
 /** Draws a leg's bodies beside and below the plate: foot, leaf spring and coupler. */
-function drawFoot(pen: Pen, scene: Scene, servo: number, slide: number): void {
+function drawFoot(context: Context, scene: Scene, servo: number, slide: number): void {
   const colours = palette();
   const { joints, foot } = scene.legs[servo];
-  drawBar(pen, joints[1], foot, colours.steel, 2.2);
+  drawBar(context, joints[1], foot, colours.steel, 2.2);
   // A foot that holds is filled; one that slips is a ring.
-  drawDisc(pen, foot, FOOT_RADIUS_MM, slide > SLIP_LIMIT_MM ? colours.card : colours.ink);
-  pen.strokeStyle = colours.ink;
-  pen.lineWidth = 2;
-  pen.stroke();
-  drawBar(pen, joints[0], joints[1], servoColour(servo), 4.2);
+  drawDisc(context, foot, FOOT_RADIUS_MM, slide > SLIP_LIMIT_MM ? colours.card : colours.ink);
+  context.strokeStyle = colours.ink;
+  context.lineWidth = 2;
+  context.stroke();
+  drawBar(context, joints[0], joints[1], servoColour(servo), 4.2);
 }
 
 /** Draws the plate, the arms on it that carry the legs' pivots, and the servos' cases. */
-function drawChassis(pen: Pen, plate: Plate): void {
+function drawChassis(context: Context, plate: Plate): void {
   const colours = palette();
   const [halfWidth, halfLength] = plate.half;
   for (const [rim, colour] of [[RIM_WIDTH_MM, colours['frame-edge']], [0, colours.frame]] as const) {
-    for (const [from, to] of plate.arms) drawBar(pen, from, to, colour, 2 * (plate.arm + rim));
-    pen.fillStyle = colour;
-    pen.beginPath();
-    pen.roundRect(-halfWidth - rim, -halfLength - rim, 2 * (halfWidth + rim), 2 * (halfLength + rim), plate.corner + rim);
-    pen.fill();
+    for (const [from, to] of plate.arms) drawBar(context, from, to, colour, 2 * (plate.arm + rim));
+    context.fillStyle = colour;
+    context.beginPath();
+    context.roundRect(-halfWidth - rim, -halfLength - rim, 2 * (halfWidth + rim), 2 * (halfLength + rim), plate.corner + rim);
+    context.fill();
   }
   const [width, length] = plate.case;
   plate.cases.forEach(([x, y], servo) => {
-    pen.globalAlpha = 0.35;
-    pen.fillStyle = servoColour(servo);
-    pen.beginPath();
-    pen.roundRect(x - width / 2, y - length / 2, width, length, 1.3);
-    pen.fill();
-    pen.globalAlpha = 1;
+    context.globalAlpha = 0.35;
+    context.fillStyle = servoColour(servo);
+    context.beginPath();
+    context.roundRect(x - width / 2, y - length / 2, width, length, 1.3);
+    context.fill();
+    context.globalAlpha = 1;
   });
 }
 
 /** Draws a leg's bodies above the plate: crank, follower and strut. */
-function drawLeg(pen: Pen, scene: Scene, servo: number): void {
+function drawLeg(context: Context, scene: Scene, servo: number): void {
   const colours = palette();
   const { pivots, joints, strut, sprung } = scene.legs[servo];
   const colour = servoColour(servo);
-  drawBar(pen, pivots[0], strut[1], colour, 3.2);
-  for (const n of [0, 1]) drawBar(pen, pivots[n], joints[n], colour, 3.2);
-  for (const point of [...pivots, ...joints]) drawDisc(pen, point, 1.6, colours.card, colours.ink);
-  drawBar(pen, strut[0], strut[1], colours.steel, sprung ? 0.8 : 1.6);
-  if (sprung) drawSpring(pen, strut[0], strut[1]);
-  drawDisc(pen, strut[1], 1.2, colours.card, colours.ink);
-  drawBar(pen, scene.shafts[servo], strut[0], colour, 3);
+  drawBar(context, pivots[0], strut[1], colour, 3.2);
+  for (const n of [0, 1]) drawBar(context, pivots[n], joints[n], colour, 3.2);
+  for (const point of [...pivots, ...joints]) drawDisc(context, point, 1.6, colours.card, colours.ink);
+  drawBar(context, strut[0], strut[1], colours.steel, sprung ? 0.8 : 1.6);
+  if (sprung) drawSpring(context, strut[0], strut[1]);
+  drawDisc(context, strut[1], 1.2, colours.card, colours.ink);
+  drawBar(context, scene.shafts[servo], strut[0], colour, 3);
 }
 
 /** Draws the telescopic slider between the two servos of a side, 0 for left and 1 for right. */
-function drawSlider(pen: Pen, scene: Scene, side: 0 | 1): void {
+function drawSlider(context: Context, scene: Scene, side: 0 | 1): void {
   const colours = palette();
   const { shafts, tips, tube } = scene.sliders[side];
-  drawBar(pen, tips[0], tips[1], colours.steel, 1.8);
-  drawBar(pen, tips[1], tube, colours.tube, 5);
+  drawBar(context, tips[0], tips[1], colours.steel, 1.8);
+  drawBar(context, tips[1], tube, colours.tube, 5);
   const servos = side === 0 ? [0, 3] : [1, 2];
   servos.forEach((servo, n) => {
-    pen.globalAlpha = 0.75;
-    drawBar(pen, shafts[n], tips[n], servoColour(servo), 3);
-    pen.globalAlpha = 1;
-    drawDisc(pen, tips[n], 2, colours.card, colours.ink);
+    context.globalAlpha = 0.75;
+    drawBar(context, shafts[n], tips[n], servoColour(servo), 3);
+    context.globalAlpha = 1;
+    drawDisc(context, tips[n], 2, colours.card, colours.ink);
   });
 }
 
 /** Draws the five-bar of an end, 0 for the head and 1 for the tail. */
-function drawFiveBar(pen: Pen, scene: Scene, end: 0 | 1): void {
+function drawFiveBar(context: Context, scene: Scene, end: 0 | 1): void {
   const colours = palette();
   const servos = end === 0 ? [0, 1] : [2, 3];
   const point = scene.points[end];
-  for (const servo of servos) drawBar(pen, scene.tips[servo], point, colours.steel, 3.4);
+  for (const servo of servos) drawBar(context, scene.tips[servo], point, colours.steel, 3.4);
   for (const servo of servos) {
-    drawBar(pen, scene.shafts[servo], scene.tips[servo], servoColour(servo), 4.6);
-    drawDisc(pen, scene.tips[servo], 2.2, colours.card, colours.ink);
-    drawDisc(pen, scene.shafts[servo], 3.4, colours.ink);
-    drawDisc(pen, scene.shafts[servo], 1.2, colours.card);
+    drawBar(context, scene.shafts[servo], scene.tips[servo], servoColour(servo), 4.6);
+    drawDisc(context, scene.tips[servo], 2.2, colours.card, colours.ink);
+    drawDisc(context, scene.shafts[servo], 3.4, colours.ink);
+    drawDisc(context, scene.shafts[servo], 1.2, colours.card);
   }
-  drawDisc(pen, point, 3.2, '#f0e442', '#222222');
+  drawDisc(context, point, 3.2, '#f0e442', '#222222');
 }
 
 /** Draws a pose, the lowest bodies first; `slides` are the distances that the feet slid in this frame, mm. */
-export function drawLizard(pen: Pen, plate: Plate, scene: Scene, slides: readonly number[]): void {
-  drawSkin(pen, scene);
-  for (const servo of SERVOS) drawFoot(pen, scene, servo, slides[servo] ?? 0);
-  drawChassis(pen, plate);
-  for (const servo of SERVOS) drawLeg(pen, scene, servo);
-  drawSlider(pen, scene, 0);
-  drawSlider(pen, scene, 1);
-  drawFiveBar(pen, scene, 0);
-  drawFiveBar(pen, scene, 1);
-  for (const { strut } of scene.legs) drawDisc(pen, strut[0], 1.2, palette().card, palette().ink);
+export function drawLizard(context: Context, plate: Plate, scene: Scene, slides: readonly number[]): void {
+  drawSkin(context, scene);
+  for (const servo of SERVOS) drawFoot(context, scene, servo, slides[servo] ?? 0);
+  drawChassis(context, plate);
+  for (const servo of SERVOS) drawLeg(context, scene, servo);
+  drawSlider(context, scene, 0);
+  drawSlider(context, scene, 1);
+  drawFiveBar(context, scene, 0);
+  drawFiveBar(context, scene, 1);
+  for (const { strut } of scene.legs) drawDisc(context, strut[0], 1.2, palette().card, palette().ink);
 }

@@ -15,7 +15,7 @@ export function setAttributes(node: Element | undefined, attributes: Record<stri
 }
 
 /** Makes an SVG element with its attributes and children. */
-export function shape<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Child[]): SVGElementTagNameMap[K] {
+export function makeSvg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Child[]): SVGElementTagNameMap[K] {
   const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
   setAttributes(node, attributes);
   node.append(...children);
@@ -33,15 +33,15 @@ export const row = (...children: Child[]): HTMLElement => make('p', { className:
 /** Makes a bulleted list. */
 export const list = (...items: Child[]): HTMLElement => make('ul', {}, ...items.map((item) => make('li', {}, item)));
 
-/** Makes a button that calls `act`; `isMain` marks the action that the user is expected to take. */
-export function button(label: string, act: () => void, isMain = false): HTMLButtonElement {
-  return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: act }, label);
+/** Makes a button that calls `action`; `isMain` marks the action that the user is expected to take. */
+export function button(label: string, action: () => void, isMain = false): HTMLButtonElement {
+  return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: action }, label);
 }
 
-/** Makes a labelled number input; `act` is called with each number that the user enters. */
-export function numberBox(label: string, value: number | null, step: string, act: (value: number) => void): HTMLElement {
+/** Makes a labelled number input; `action` is called with each number that the user enters. */
+export function numberBox(label: string, value: number | null, step: string, action: (value: number) => void): HTMLElement {
   const box = make('input', { type: 'number', step, value: String(value ?? '') });
-  box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && act(box.valueAsNumber));
+  box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && action(box.valueAsNumber));
   return make('label', { className: 'number' }, label, ' ', box);
 }
 

@@ -2,7 +2,7 @@
 // the robot's current position.
 import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
-import { element, surface } from './canvas';
+import { element, prepareSurface } from './canvas';
 import { onPaletteChange, palette } from './palette';
 
 /** Number of frames whose positions are drawn as a trail. */
@@ -38,30 +38,30 @@ export class MapView {
 
   draw(): void {
     const { map } = this;
-    const area = surface(this.canvas);
+    const area = prepareSurface(this.canvas);
     if (!area || !map) return;
-    const { pen, width, height } = area;
+    const { context, width, height } = area;
     if (this.background?.width !== this.canvas.width) this.background = this.drawBackground(map);
-    pen.drawImage(this.background, 0, 0, width, height);
+    context.drawImage(this.background, 0, 0, width, height);
     const scale = width / (map.to - map.from);
     const pixelOf = ([left, right]: [number, number]): [number, number] => [
       (left - map.from) * scale,
       height - (right - map.from) * scale,
     ];
-    pen.strokeStyle = palette().a1;
-    pen.lineWidth = 1.5;
-    pen.beginPath();
-    for (const point of this.trail) pen.lineTo(...pixelOf(point));
-    pen.stroke();
+    context.strokeStyle = palette().a1;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    for (const point of this.trail) context.lineTo(...pixelOf(point));
+    context.stroke();
     const currentPoint = this.trail[this.trail.length - 1];
     if (!currentPoint) return;
-    pen.fillStyle = palette().a1;
-    pen.strokeStyle = palette().card;
-    pen.lineWidth = 2;
-    pen.beginPath();
-    pen.arc(...pixelOf(currentPoint), 5, 0, 2 * Math.PI);
-    pen.fill();
-    pen.stroke();
+    context.fillStyle = palette().a1;
+    context.strokeStyle = palette().card;
+    context.lineWidth = 2;
+    context.beginPath();
+    context.arc(...pixelOf(currentPoint), 5, 0, 2 * Math.PI);
+    context.fill();
+    context.stroke();
   }
 
   private drawBackground(map: SingularityMap): HTMLCanvasElement {
@@ -69,29 +69,29 @@ export class MapView {
     const size = this.canvas.width;
     backgroundCanvas.width = size;
     backgroundCanvas.height = this.canvas.height;
-    const pen = backgroundCanvas.getContext('2d');
-    if (!pen) return backgroundCanvas;
+    const context = backgroundCanvas.getContext('2d');
+    if (!context) return backgroundCanvas;
     const colours = palette();
-    pen.fillStyle = colours.floor;
-    pen.fillRect(0, 0, size, size);
+    context.fillStyle = colours.floor;
+    context.fillRect(0, 0, size, size);
     const cellSize = size / (map.size - 1);
     map.margins.forEach((margin, index) => {
       const [left, right] = [Math.floor(index / map.size), index % map.size];
       if (margin === null || margin <= 0) return;
-      pen.fillStyle = map.safe[index] ? colours.safe : colours.near;
-      pen.globalAlpha = map.safe[index] ? 0.45 + Math.min(0.55, margin / 160) : 0.7;
-      pen.fillRect((left - 0.5) * cellSize, size - (right + 0.5) * cellSize, cellSize + 0.6, cellSize + 0.6);
+      context.fillStyle = map.safe[index] ? colours.safe : colours.near;
+      context.globalAlpha = map.safe[index] ? 0.45 + Math.min(0.55, margin / 160) : 0.7;
+      context.fillRect((left - 0.5) * cellSize, size - (right + 0.5) * cellSize, cellSize + 0.6, cellSize + 0.6);
     });
-    pen.globalAlpha = 1;
+    context.globalAlpha = 1;
     const scale = size / (map.to - map.from);
     const dotRadius = Math.max(1.2, size / 160);
     for (const { kind, points } of map.curves) {
-      pen.fillStyle = kind === 'couplers' ? colours.alarm : colours.steel;
+      context.fillStyle = kind === 'couplers' ? colours.alarm : colours.steel;
       const dotScale = kind === 'couplers' ? 2.5 : 1;
       for (const [left, right] of points) {
-        pen.beginPath();
-        pen.arc((left - map.from) * scale, size - (right - map.from) * scale, dotRadius * dotScale, 0, 2 * Math.PI);
-        pen.fill();
+        context.beginPath();
+        context.arc((left - map.from) * scale, size - (right - map.from) * scale, dotRadius * dotScale, 0, 2 * Math.PI);
+        context.fill();
       }
     }
     return backgroundCanvas;

@@ -8,7 +8,7 @@ import { Helper } from '../helper';
 import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
 import { TagTracker } from '../measure/tag-tracker';
 import { PictureSource } from '../measure/source';
-import type { FilmFunctions } from '../measure/worker';
+import type { FilmWorkerApi } from '../measure/worker';
 import type { Predictor } from '../predictor';
 import type { Description, Gait } from '../robot';
 import type { Session } from '../session';
@@ -39,13 +39,13 @@ const INPUT_RANGES: Record<string, Range & { value: number | null }> = {
  */
 type Task = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
 
-type FilmHelper = Helper<FilmFunctions>;
+type FilmHelper = Helper<FilmWorkerApi>;
 
 /** Starts the worker that finds the tags in pictures and measures the walks. */
 async function loadFilmHelper(): Promise<FilmHelper> {
   const module = await files.measure();
   const filmHelper: FilmHelper = new Helper(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
-  await filmHelper.ask((functions) => functions.load(module));
+  await filmHelper.call((film) => film.load(module));
   return filmHelper;
 }
 
@@ -170,11 +170,11 @@ export class MeasureView {
   }
 
   /** Runs an action that the user has asked for; shows the reason if it fails. */
-  private async runAction(act: () => Promise<void>): Promise<void> {
+  private async runAction(action: () => Promise<void>): Promise<void> {
     try {
-      await act();
+      await action();
     } catch (error) {
-      this.say(messageOf(error), true);
+      this.setMessage(messageOf(error), true);
     } finally {
       this.updateControls();
     }
@@ -183,18 +183,18 @@ export class MeasureView {
   private async toggleCamera(): Promise<void> {
     if (this.source.isCamera) {
       this.switchCameraOff();
-      return this.say('');
+      return this.setMessage('');
     }
-    this.say('Opening the camera…');
+    this.setMessage('Opening the camera…');
     this.hasFilm = false;
     await this.getFilmHelper();
     await this.source.openCamera(() => {
       this.switchCameraOff();
-      this.say('The camera is gone.', true);
+      this.setMessage('The camera is gone.', true);
       this.updateControls();
     });
     this.tracker = new TagTracker();
-    this.say('Place the camera so that all five tags are seen.');
+    this.setMessage('Place the camera so that all five tags are seen.');
   }
 
   /** Switches the camera off and ends the activity that uses it. */
@@ -210,11 +210,11 @@ export class MeasureView {
     const filmHelper = await this.getFilmHelper();
     const isKept = this.task === 'record' || this.task === 'play' || (this.task === 'drive' && !this.isBeingPutBack);
     try {
-      this.tracker.addSight(await filmHelper.ask((functions) => functions.look(transfer(picture, [picture]), seconds, isKept)));
+      this.tracker.addDetection(await filmHelper.call((film) => film.look(transfer(picture, [picture]), seconds, isKept)));
       this.protocol?.setPlace(this.tracker.offsetToMiddle);
       drawTracking(this.view.querySelector('canvas') as HTMLCanvasElement, this.tracker);
     } catch (error) {
-      this.say(messageOf(error), true);
+      this.setMessage(messageOf(error), true);
     }
   }
 
@@ -222,11 +222,11 @@ export class MeasureView {
   private async readFilm(file: File): Promise<void> {
     this.switchCameraOff();
     const filmHelper = await this.getFilmHelper();
-    await filmHelper.ask((functions) => functions.clear());
+    await filmHelper.call((film) => film.clear());
     this.tracker = new TagTracker();
     this.task = 'play';
     this.hasFilm = false;
-    this.say(`Reading ${file.name}…`);
+    this.setMessage(`Reading ${file.name}…`);
     this.updateControls();
     try {
       await this.source.playFile(file);
@@ -252,11 +252,11 @@ export class MeasureView {
     const isPageDriving = this.driverList.value === 'page';
     const gaits = isPageDriving ? this.drivableGaits() : [];
     const filmHelper = await this.getFilmHelper();
-    await filmHelper.ask((functions) => functions.clear());
+    await filmHelper.call((film) => film.clear());
     this.tracker.clear();
     if (isPageDriving) return this.driveGaits(gaits);
     this.task = 'record';
-    this.say('Recording. Let the robot walk at least four cycles, then press Done.');
+    this.setMessage('Recording. Let the robot walk at least four cycles, then press Done.');
   }
 
   /** Returns the ticked gaits. Throws the reason why the page cannot drive. */
@@ -282,7 +282,7 @@ export class MeasureView {
       wait: (seconds) => session.link.wait(1000 * seconds),
       predictions: () => this.predictor.gaits.map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
       putBack: () => this.waitUntilPutBack(protocol),
-      say: (text) => this.say(text),
+      say: (text) => this.setMessage(text),
     });
     this.protocol = protocol;
     protocol.setPlace(this.tracker.offsetToMiddle);
@@ -312,7 +312,7 @@ export class MeasureView {
   private async waitUntilPutBack(protocol: Protocol): Promise<void> {
     this.isBeingPutBack = true;
     this.putBackButton.hidden = false;
-    this.say('The robot is near the end of what the camera measures, or its tag is hidden: put it back to the middle of the strips, and press the button.', true);
+    this.setMessage('The robot is near the end of what the camera measures, or its tag is hidden: put it back to the middle of the strips, and press the button.', true);
     await new Promise<void>((resolve) => {
       this.putBackButton.onclick = () => resolve();
       protocol.onEnd = resolve;
@@ -326,12 +326,12 @@ export class MeasureView {
    */
   private async measureWalks(walks: AskedWalk[], speed = this.values.speed ?? 100, troubles: string[] = []): Promise<void> {
     this.task = 'compute';
-    this.say('Measuring…');
+    this.setMessage('Measuring…');
     this.updateControls();
     const filmHelper = await this.getFilmHelper();
     const { height = null, ruler } = this.values;
     try {
-      const results = await filmHelper.ask((functions) => functions.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
+      const results = await filmHelper.call((film) => film.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
       this.resultsView.show(results.gaits);
       troubles.push(...results.troubles);
     } catch (error) {
@@ -339,14 +339,14 @@ export class MeasureView {
       troubles.push(messageOf(error));
     }
     this.task = 'nothing';
-    this.say(troubles.map((trouble) => `${trouble}.`).join(' '), true);
+    this.setMessage(troubles.map((trouble) => `${trouble}.`).join(' '), true);
   }
 
   private async saveSheet(): Promise<void> {
     const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
     const filmHelper = await this.getFilmHelper();
-    saveFile('sheet.pdf', [await filmHelper.ask((functions) => functions.sheet(isLetter))], 'application/pdf');
-    this.say('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
+    saveFile('sheet.pdf', [await filmHelper.call((film) => film.sheet(isLetter))], 'application/pdf');
+    this.setMessage('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 
   /** Shows and enables the controls that can be used during the current task. */
@@ -364,7 +364,7 @@ export class MeasureView {
     this.driverList.disabled = task !== 'nothing';
   }
 
-  private say(text: string, isTrouble = false): void {
+  private setMessage(text: string, isTrouble = false): void {
     setText(element('measure-said'), text);
     element('measure-said').classList.toggle('refusal', isTrouble && text !== '');
   }

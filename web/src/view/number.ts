@@ -9,8 +9,7 @@ export interface Range {
 
 /**
  * Sets an input's range. `onNumber` is called with each valid number that is typed, and with null when the input is
- * emptied.
- * Leaving the input with an invalid number restores the last valid one.
+ * emptied. Leaving the input with an invalid number restores the last valid one.
  */
 export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Range, onNumber: (value: number | null) => void): void {
   Object.assign(input, { type: 'number', min: String(min), max: String(max), step: String(step), title: `from ${min} to ${max}` });

@@ -24,14 +24,14 @@ export class OwnRobot {
   putAside(previous: SavedChanges | null): void {
     if (!previous || previous.toml === previous.original || previous.toml === this.session.toml) return;
     this.storeAside([previous, ...browserStorage.getPutAside().filter(({ toml }) => toml !== previous.toml)]);
-    this.troubles.say('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', act: () => void this.restore() });
+    this.troubles.setMessage('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
   }
 
   /** Restores the robot with an index among those that were put aside, and puts the current one aside. */
   async restore(index = 0): Promise<void> {
     const robotsAside = browserStorage.getPutAside();
     const ownRobot = robotsAside[index];
-    this.troubles.say('own', null);
+    this.troubles.setMessage('own', null);
     if (!ownRobot) return;
     const previous = browserStorage.getChanges();
     await this.loadFile(ownRobot.file);

@@ -1,7 +1,7 @@
 // The robot in 3D on the stage, and its panel: the parts, the steps of the building guide, and all files for printing
 // and cutting. The code for 3D is loaded only when 3D is shown or the panel is opened.
 import type { RobotView } from '../parts/robot-view';
-import type { PartsArchive, Meeting, Model, Progress, Solids } from '../parts/workshop';
+import type { PartsArchive, Clash, Model, Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
 import { messageOf } from '../trouble';
@@ -23,12 +23,12 @@ export class PartsView {
   private readonly canvas = element<HTMLCanvasElement>('space');
   private readonly explosionSlider = element<HTMLInputElement>('apart');
   private readonly partList = element<HTMLSelectElement>('part');
-  /** The buttons that make files: `all` makes every file, `changed` only those that differ after the lengths were edited. */
+  /** The buttons that make files: `all` makes every file, `changed` only those that the edited lengths change. */
   private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
   private robotView: RobotView | null = null;
   private solids: Solids | null = null;
   private model: Model | null = null;
-  /** The robot.toml that is shown or being loaded. */
+  /** The robot.toml that is shown or being loaded; empty for none. */
   private shownToml = '';
   /** The robot.toml to which the shown list of files belongs. */
   private listedToml = '';
@@ -37,11 +37,11 @@ export class PartsView {
   /** The index of the picked part; null without one. */
   private pickedBody: number | null = null;
   /** The two parts that overlap or come too close to each other, which are shown in red; null if all fit. */
-  private meeting: Meeting | null = null;
+  private clash: Clash | null = null;
   /** Angles and lags of the pose that was requested last, as text; empty if the pose must be requested again. */
   private requestedPose = '';
   /** Cancels the making of files; null while none are being made. */
-  private stopMaking: (() => void) | null = null;
+  private cancelMaking: (() => void) | null = null;
 
   constructor(private readonly session: Session) {
     this.button3d.addEventListener('click', () => this.set3d(!this.is3d));
@@ -78,27 +78,27 @@ export class PartsView {
     if (this.listedToml !== toml) {
       this.listedToml = toml;
       this.listFiles([]);
-      if (!this.stopMaking) this.say('files-said', '');
+      if (!this.cancelMaking) this.setMessage('files-said', '');
     }
     this.show3d(toml);
   }
 
-  /** Shows a robot, also one that is not the session's yet, if the stage is in 3D. */
+  /** Shows a robot, which may differ from the session's, if the stage is in 3D. */
   show3d(toml: string): void {
     if (!this.is3d || toml === this.shownToml) return;
     this.shownToml = toml;
-    this.stopMaking?.();
+    this.cancelMaking?.();
     void this.load(toml);
   }
 
   private async load(toml: string): Promise<void> {
-    this.say('parts-said', 'Building the 3D model…');
+    this.setMessage('parts-said', 'Building the 3D model…');
     try {
       const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/workshop'), import('../parts/robot-view')]);
       const { solids, model, meshes } = await Solids.make(toml);
-      if (toml !== this.shownToml) return solids.end();
+      if (toml !== this.shownToml) return solids.dispose();
       // The previous robot was shown until now.
-      this.solids?.end();
+      this.solids?.dispose();
       this.solids = solids;
       this.model = model;
       this.requestedPose = '';
@@ -109,19 +109,19 @@ export class PartsView {
       this.pickBody(null);
     } catch (error) {
       if (toml !== this.shownToml) return;
-      // A failed download is tried again when 3D is shown again.
+      // A failed download is repeated when the 3D view is opened again.
       this.shownToml = '';
-      this.say('parts-said', `The parts of this robot cannot be made: ${messageOf(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
+      this.setMessage('parts-said', `The parts of this robot cannot be made: ${messageOf(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
     }
   }
 
   /** Creates the 3D view; returns null and shows a message if the browser has no WebGL. */
-  private createRobotView(robotViewClass: typeof RobotView): RobotView | null {
+  private createRobotView(RobotViewClass: typeof RobotView): RobotView | null {
     try {
-      return new robotViewClass(this.canvas, (body) => this.pickBody(body));
+      return new RobotViewClass(this.canvas, (body) => this.pickBody(body));
     } catch {
       this.canvas.hidden = true;
-      this.say('space-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in 3D. You can still make the files.');
+      this.setMessage('space-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in 3D. You can still make the files.');
       return null;
     }
   }
@@ -138,7 +138,7 @@ export class PartsView {
     this.showStep(this.step === null ? (change > 0 ? 1 : lastStep) : Math.max(1, Math.min(lastStep, this.step + change)));
   }
 
-  /** Shows a step with its new parts exploded, as the guide's picture does; for null, shows the robot assembled. */
+  /** Shows a step with its new parts exploded, as in the guide's picture; null shows the assembled robot. */
   private showStep(step: number | null): void {
     if (!this.model) return;
     if ((step === null) !== (this.step === null)) this.explosionSlider.value = step === null ? '0' : '100';
@@ -146,57 +146,57 @@ export class PartsView {
     this.requestedPose = '';
     const shownStep = step === null ? undefined : this.model.steps[step - 1];
     const count = this.model.steps.length;
-    this.say('step-title', shownStep ? `${step} of ${count}: ${shownStep.title}` : 'The whole robot');
-    this.say('step-words', shownStep ? plainText(shownStep.words) : '');
+    this.setMessage('step-title', shownStep ? `${step} of ${count}: ${shownStep.title}` : 'The whole robot');
+    this.setMessage('step-words', shownStep ? plainText(shownStep.words) : '');
     element<HTMLButtonElement>('step-back').disabled = step === 1;
     element<HTMLButtonElement>('step-on').disabled = step === count;
     element<HTMLButtonElement>('step-all').disabled = step === null;
     this.updateRobotView();
   }
 
-  /** Highlights the part with an index and describes it; null for none. */
+  /** Highlights the body with this index and describes it; null for none. */
   private pickBody(index: number | null): void {
     this.pickedBody = index;
     this.partList.value = index === null ? '' : String(index);
     const body = index === null ? undefined : this.model?.bodies[index];
     const part = body?.part == null ? undefined : this.model?.parts[body.part];
-    const { meeting } = this;
-    if (meeting) {
-      const { first, second, mm } = meeting;
-      this.say('parts-said', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
-    } else if (!body) this.say('parts-said', this.robotView ? 'Click a part for its name and its file.' : '');
-    else if (!part) this.say('parts-said', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
+    const { clash } = this;
+    if (clash) {
+      const { first, second, mm } = clash;
+      this.setMessage('parts-said', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
+    } else if (!body) this.setMessage('parts-said', this.robotView ? 'Click a part for its name and its file.' : '');
+    else if (!part) this.setMessage('parts-said', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
     else {
       const countText = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
-      this.say('parts-said', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; mounted in step ${body.step}.`);
+      this.setMessage('parts-said', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; mounted in step ${body.step}.`);
     }
     this.updateRobotView();
   }
 
   /** Shows in red two parts that come too close to each other, in the pose in which they do; null if all fit. */
-  showMeeting(meeting: Meeting | null): void {
-    if (meeting === this.meeting) return;
-    this.meeting = meeting;
+  showClash(clash: Clash | null): void {
+    if (clash === this.clash) return;
+    this.clash = clash;
     this.requestedPose = '';
     this.pickBody(this.pickedBody);
   }
 
   private updateRobotView(): void {
     element('apart-out').textContent = `${this.explosionSlider.value} %`;
-    const { step, pickedBody, meeting, model } = this;
-    const names = meeting ? [meeting.first, meeting.second] : [];
+    const { step, pickedBody, clash, model } = this;
+    const names = clash ? [clash.first, clash.second] : [];
     const clashingBodies = names.map((name) => model?.bodies.findIndex((body) => body.name === name) ?? -1);
     this.robotView?.applySettings({ explosion: Number(this.explosionSlider.value) / 100, guideStep: step, selectedBody: pickedBody, clashingBodies });
   }
 
-  /** Draws the robot; called in every frame of the page. */
-  draw(frame: Frame | null): void {
+  /** Renders the robot; called in every animation frame. */
+  render(frame: Frame | null): void {
     const { robotView, solids } = this;
-    if (!robotView || !solids || !robotView.mayDraw() || !this.is3d) return;
+    if (!robotView || !solids || !robotView.mayRender() || !this.is3d) return;
     const neutral = this.session.description.servos.map((servo) => servo.neutral);
-    // The robot stands still while a step of the guide, or a pose in which two parts come too close, is shown.
-    const isMoving = this.step === null && !this.meeting && frame?.scene != null;
-    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.meeting?.pose ?? neutral, [0, 0, 0, 0]];
+    // The robot stands still while a step of the guide or a clash is shown.
+    const isMoving = this.step === null && !this.clash && frame?.scene != null;
+    const [angles, lags] = isMoving ? [frame.scene?.angles ?? neutral, frame.lag] : [this.clash?.pose ?? neutral, [0, 0, 0, 0]];
     const poseText = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
     if (poseText !== this.requestedPose) {
       this.requestedPose = poseText;
@@ -207,53 +207,54 @@ export class PartsView {
         else if (this.requestedPose === poseText) this.requestedPose = '';
       });
     }
-    robotView.draw(isMoving ? frame.place : ORIGIN);
+    robotView.render(isMoving ? frame.place : ORIGIN);
   }
 
   private async makeFiles(selection: 'all' | 'changed'): Promise<void> {
-    // While files are being made, the button stops the job.
-    if (this.stopMaking) return this.stopMaking();
+    // While files are being made, the button cancels the job.
+    if (this.cancelMaking) return this.cancelMaking();
     const { toml, original, file } = this.session;
     const bar = element<HTMLProgressElement>('parts-progress');
-    const activityTexts = { prove: 'Proving that no two parts meet', make: 'Making the files' };
+    const stageTexts = { prove: 'Proving that no two parts meet', make: 'Making the files' };
     const button = this.buttons[selection];
     const label = button.textContent;
     bar.hidden = false;
     bar.removeAttribute('value');
     button.textContent = 'Stop';
-    this.stopMaking = () => {};
-    this.say('files-said', 'Loading…');
+    this.cancelMaking = () => {};
+    this.setMessage('files-said', 'Loading…');
     this.listFiles([]);
-    let isStopped = false;
+    let isCancelled = false;
     let isOver = false;
     try {
       const workshop = await import('../parts/workshop');
-      const { answer, stop } = workshop.makeArchive(toml, selection === 'all' ? null : original, ({ stage, done, total }: Progress) => {
-        // Reports have a channel of their own: some arrive after the answer, or after the worker was terminated.
+      const { result, cancel } = workshop.makeArchive(toml, selection === 'all' ? null : original, ({ stage, done, total }: Progress) => {
+        // Reports come through a channel of their own: some arrive after the result, or after the worker was
+        // terminated.
         if (isOver) return;
         bar.max = total;
         bar.value = done;
-        this.say('files-said', `${activityTexts[stage]}: ${done} of ${total}.`);
+        this.setMessage('files-said', `${stageTexts[stage]}: ${done} of ${total}.`);
       });
-      const stopPromise = new Promise<null>((resolve) => {
-        this.stopMaking = () => {
-          isStopped = true;
-          stop();
+      const cancellation = new Promise<null>((resolve) => {
+        this.cancelMaking = () => {
+          isCancelled = true;
+          cancel();
           resolve(null);
         };
       });
-      const files = await Promise.race([answer, stopPromise]).finally(() => (isOver = true));
-      if (!files) return;
-      if (files.paths.length > 0) saveFile(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [files.zip], 'application/zip');
-      this.say('files-said', this.savedText(files, selection));
-      if (selection === 'changed') this.listFiles(files.paths);
+      const archive = await Promise.race([result, cancellation]).finally(() => (isOver = true));
+      if (!archive) return;
+      if (archive.paths.length > 0) saveFile(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [archive.zip], 'application/zip');
+      this.setMessage('files-said', this.savedText(archive, selection));
+      if (selection === 'changed') this.listFiles(archive.paths);
     } catch (error) {
-      this.say('files-said', `The files cannot be made: ${messageOf(error)}`);
+      this.setMessage('files-said', `The files cannot be made: ${messageOf(error)}`);
     } finally {
-      this.stopMaking = null;
+      this.cancelMaking = null;
       bar.hidden = true;
       button.textContent = label;
-      if (isStopped) this.say('files-said', 'Stopped; nothing was saved.');
+      if (isCancelled) this.setMessage('files-said', 'Stopped; nothing was saved.');
     }
   }
 
@@ -264,12 +265,12 @@ export class PartsView {
   }
 
   private listFiles(paths: string[]): void {
-    const box = element('files-list');
-    box.replaceChildren(...paths.map((path) => make('li', {}, path)));
-    box.hidden = paths.length === 0;
+    const list = element('files-list');
+    list.replaceChildren(...paths.map((path) => make('li', {}, path)));
+    list.hidden = paths.length === 0;
   }
 
-  private say(id: string, text: string): void {
+  private setMessage(id: string, text: string): void {
     showMessage(element(id), text);
   }
 }

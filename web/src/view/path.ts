@@ -2,7 +2,7 @@
 import type { DrawnGait, End, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
-import { setAttributes, shape } from './make';
+import { setAttributes, makeSvg } from './make';
 import { setUpNumberInput, putNumber, type Range } from './number';
 import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
@@ -45,11 +45,11 @@ export class PathView {
   private readonly shapeList = element<HTMLSelectElement>('path-shape');
   private readonly nameInput = element<HTMLInputElement>('path-name');
   private readonly trial: TrialView;
-  private readonly allowedArea = this.plane.appendChild(shape('path', { class: 'allowed' }));
-  private readonly baseLine = this.plane.appendChild(shape('path', { class: 'base' }));
-  private readonly drawnLine = this.plane.appendChild(shape('path', { class: 'line' }));
-  private readonly smoothedLine = this.plane.appendChild(shape('path', { class: 'rounded' }));
-  private readonly neutralDot = this.plane.appendChild(shape('circle', { class: 'neutral', r: 1.5 }));
+  private readonly allowedArea = this.plane.appendChild(makeSvg('path', { class: 'allowed' }));
+  private readonly baseLine = this.plane.appendChild(makeSvg('path', { class: 'base' }));
+  private readonly drawnLine = this.plane.appendChild(makeSvg('path', { class: 'line' }));
+  private readonly smoothedLine = this.plane.appendChild(makeSvg('path', { class: 'rounded' }));
+  private readonly neutralDot = this.plane.appendChild(makeSvg('circle', { class: 'neutral', r: 1.5 }));
   /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
   /** The area that the end point can reach; null until the panel is opened, or if there is none. */
@@ -178,7 +178,7 @@ export class PathView {
       if (!line) return;
       if (line.length < MIN_POINT_COUNT) {
         this.showGesture();
-        return this.trial.say('A tap is not a line: hold and draw it.');
+        return this.trial.setMessage('A tap is not a line: hold and draw it.');
       }
       this.shapeList.value = 'own';
       this.changeGesture({ points: line, size: 1 });

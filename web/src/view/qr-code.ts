@@ -1,7 +1,7 @@
 // Draws a text as a QR code, for a phone's camera.
 import { encode } from 'uqr';
 
-import { shape } from './make';
+import { makeSvg } from './make';
 
 /** Width of the empty border in modules (ISO/IEC 18004, 9.1). */
 const BORDER_MODULES = 4;
@@ -10,5 +10,5 @@ const BORDER_MODULES = 4;
 export function qrCode(text: string): SVGSVGElement {
   const { size, data } = encode(text, { ecc: 'L', border: BORDER_MODULES });
   const darkModules = data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join('');
-  return shape('svg', { viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': 'QR code of the link to this robot' }, shape('path', { d: darkModules }));
+  return makeSvg('svg', { viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': 'QR code of the link to this robot' }, makeSvg('path', { d: darkModules }));
 }

@@ -10,7 +10,7 @@ import { element, setText } from './canvas';
 import { saveFile } from './download';
 import { formatDisplacement } from './drive';
 import type { Floor } from './floor';
-import { shape } from './make';
+import { makeSvg } from './make';
 import { palette } from './palette';
 import { isShown } from './rooms';
 
@@ -66,7 +66,7 @@ export class RecordView {
     private readonly session: Session,
     private readonly floor: Floor,
   ) {
-    const onClick = (id: string, act: () => void) => element(id).addEventListener('click', act);
+    const onClick = (id: string, action: () => void) => element(id).addEventListener('click', action);
     onClick('record', () => this.setRecording(!this.isRecording));
     onClick('replay', () => this.setReplaying(!this.isReplaying));
     onClick('csv', () => this.recording && saveFile('run.csv', [this.recording.csv()], 'text/csv'));
@@ -100,7 +100,7 @@ export class RecordView {
     const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     this.firstGaitList.value = commands.find((gait) => gait === chosen[0]) ?? movingCommands[movingCommands.length > 1 ? 1 : 0] ?? '';
     this.secondGaitList.value = commands.find((gait) => gait === chosen[1]) ?? movingCommands[0] ?? '';
-    this.say('');
+    this.setMessage('');
     this.updateButtons();
   }
 
@@ -108,7 +108,7 @@ export class RecordView {
   addFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
     if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session.gait, seconds)) {
       this.setRecording(false);
-      this.say(`The recording is full: ${MAX_SECONDS} s.`);
+      this.setMessage(`The recording is full: ${MAX_SECONDS} s.`);
     }
     if (!this.companion || this.isWaiting) return;
     for (this.pendingTime += seconds; this.pendingTime > FRAME_SECONDS / 2; this.pendingTime -= FRAME_SECONDS) this.companion.step();
@@ -164,7 +164,7 @@ export class RecordView {
     const { last } = this.session;
     const start = { x: 0, y: 0, heading: 0 };
     const displacementOf = (frame: Frame | null) => (frame ? formatDisplacement(Robot.between(start, frame.place)) : '');
-    this.say(`${pair.names[0]}: ${displacementOf(last)}. ${pair.names[1]}: ${displacementOf(companion.frame)}.`, pair.output);
+    this.setMessage(`${pair.names[0]}: ${displacementOf(last)}. ${pair.names[1]}: ${displacementOf(companion.frame)}.`, pair.output);
   }
 
   /** Starts or ends the recording. */
@@ -178,7 +178,7 @@ export class RecordView {
     } else if (this.recording) {
       this.timeSlider.max = String(this.recording.duration);
       this.timeSlider.value = '0';
-      this.say(`${this.recording.duration.toFixed(1)} s recorded.`);
+      this.setMessage(`${this.recording.duration.toFixed(1)} s recorded.`);
     }
     this.updateButtons();
   }
@@ -217,7 +217,7 @@ export class RecordView {
         for (const track of film.stream.getTracks()) track.stop();
         saveFile(`run.${extension}`, pieces, type);
       });
-      film.addEventListener('error', () => this.say('The browser could not write the film.'));
+      film.addEventListener('error', () => this.setMessage('The browser could not write the film.'));
       film.start(1000);
       this.film = film;
     }
@@ -228,20 +228,20 @@ export class RecordView {
     const canvas = element<HTMLCanvasElement>('floor');
     const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve));
     if (blob) saveFile('floor.png', [blob], 'image/png');
-    else this.say('The browser could not write the picture.');
+    else this.setMessage('The browser could not write the picture.');
   }
 
   private async saveSvg(): Promise<void> {
     try {
       const { Context } = await import('svgcanvas');
       const { clientWidth, clientHeight } = element('floor');
-      const pen = new Context(clientWidth, clientHeight);
-      const label = this.floor.redraw(pen as unknown as CanvasRenderingContext2D);
+      const context = new Context(clientWidth, clientHeight);
+      const label = this.floor.redraw(context as unknown as CanvasRenderingContext2D);
       // The package measures text by an inline style, which the page's security policy forbids.
-      pen.getSvg().append(shape('text', { x: label.x, y: label.y, fill: palette().ink, 'font-size': 12, 'font-family': 'sans-serif' }, label.text));
-      saveFile('floor.svg', [pen.getSerializedSvg()], 'image/svg+xml');
+      context.getSvg().append(makeSvg('text', { x: label.x, y: label.y, fill: palette().ink, 'font-size': 12, 'font-family': 'sans-serif' }, label.text));
+      saveFile('floor.svg', [context.getSerializedSvg()], 'image/svg+xml');
     } catch (error) {
-      this.say(`The picture cannot be made: ${messageOf(error)}`);
+      this.setMessage(`The picture cannot be made: ${messageOf(error)}`);
     }
   }
 
@@ -254,9 +254,9 @@ export class RecordView {
   async compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
     const session = this.session;
     const toml = session.robot.putGait(session.toml, previousGait);
-    this.say('The robot restarts with this gait…', output);
+    this.setMessage('The robot restarts with this gait…', output);
     const refusal = await restartWithGait(session, foundGait);
-    if (refusal) return this.say(refusal.refused, output);
+    if (refusal) return this.setMessage(refusal.refused, output);
     const gait = foundGait.name.replaceAll('-', ' ');
     await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
   }
@@ -266,7 +266,7 @@ export class RecordView {
     const session = this.session;
     const { toml, floor, servos, volts } = session;
     this.removeCompanion();
-    this.say('Switching on the second robot…', pair.output);
+    this.setMessage('Switching on the second robot…', pair.output);
     try {
       const companion = Companion.create(pair.toml, floor, servos, volts);
       if (toml !== this.session.toml) return;
@@ -280,13 +280,13 @@ export class RecordView {
       this.floor.fitTwoRobots();
       await session.drive(pair.gaits[0]);
     } catch (error) {
-      this.say(`The second robot cannot start: ${messageOf(error)}`, pair.output);
+      this.setMessage(`The second robot cannot start: ${messageOf(error)}`, pair.output);
     }
   }
 
   private removeCompanion(): void {
-    if (this.pair) this.say('', this.pair.output);
-    this.companion?.end();
+    if (this.pair) this.setMessage('', this.pair.output);
+    this.companion?.dispose();
     Object.assign(this, { companion: null, pair: null, isWaiting: false });
     this.updateButtons();
   }
@@ -308,5 +308,5 @@ export class RecordView {
     element<HTMLButtonElement>('alone').disabled = this.companion === null;
   }
 
-  private readonly say = (text: string, box = element('keep-said')): void => setText(box, text);
+  private readonly setMessage = (text: string, box = element('keep-said')): void => setText(box, text);
 }

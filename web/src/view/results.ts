@@ -13,7 +13,7 @@ export class ResultsView {
 
   /** `name` returns the robot's name. */
   constructor(private readonly name: () => string) {
-    const onClick = (id: string, act: () => void) => element(`measured-${id}`).addEventListener('click', act);
+    const onClick = (id: string, action: () => void) => element(`measured-${id}`).addEventListener('click', action);
     onClick('svg', () => saveFile('measured.svg', [this.cardSvg], 'image/svg+xml'));
     onClick('png', () => void this.savePng());
     onClick('csv', () => saveFile('measured.csv', [resultsCsv(this.gaits)], 'text/csv'));

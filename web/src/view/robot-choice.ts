@@ -35,16 +35,17 @@ export class RobotChoice {
   }
 
   /**
-   * Makes the list of the robots whose files come with the page. Throws an error for the user if the list is missing.
+   * Makes the list of the robots whose files come with the page. Throws an error with a message for the user if the
+   * list is missing.
    */
   static async load(): Promise<RobotChoice> {
     const { all, tests } = await files.robots();
     return new RobotChoice(all, tests);
   }
 
-  /** Calls `act` when the user has chosen a robot. */
-  onChange(act: () => void): void {
-    this.list.addEventListener('change', act);
+  /** Calls `action` when the user has chosen a robot. */
+  onChange(action: () => void): void {
+    this.list.addEventListener('change', action);
   }
 
   /** The chosen robot's file name. */

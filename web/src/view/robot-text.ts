@@ -162,9 +162,9 @@ export class RobotText {
   private async copyLink(): Promise<void> {
     try {
       await navigator.clipboard.writeText(await linkTo(this.session.toml));
-      this.say('The link is copied: it opens this robot, without the comments of its text.');
+      this.setMessage('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
-      this.say(`The link could not be copied: ${messageOf(error)}`);
+      this.setMessage(`The link could not be copied: ${messageOf(error)}`);
     }
   }
 
@@ -174,18 +174,18 @@ export class RobotText {
     const isShown = codeBox.childElementCount === 0;
     element('robot-code').setAttribute('aria-pressed', String(isShown));
     codeBox.replaceChildren();
-    if (!isShown) return this.say('');
+    if (!isShown) return this.setMessage('');
     try {
       const { qrCode } = await import('./qr-code');
       codeBox.replaceChildren(qrCode(await linkTo(this.session.toml)));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
-      this.say(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
+      this.setMessage(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
     } catch (error) {
-      this.say(`No code can be drawn: ${messageOf(error)}`);
+      this.setMessage(`No code can be drawn: ${messageOf(error)}`);
     }
   }
 
-  private readonly say = (text: string): void => setText(element('robot-said'), text);
+  private readonly setMessage = (text: string): void => setText(element('robot-said'), text);
 
   private goToMistake(): void {
     const line = this.refusal?.line;
@@ -203,7 +203,7 @@ export class RobotText {
     const button = element('robot-line');
     button.hidden = refusal?.line == null;
     button.textContent = `Go to line ${refusal?.line}`;
-    this.say('');
+    this.setMessage('');
     // The code that was shown belongs to another robot.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');

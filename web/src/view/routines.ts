@@ -1,7 +1,7 @@
 // The panel of routines: their steps, as in the text of robot.toml, and a recorder that makes a routine of a drive.
 import { follow } from '../follow';
 import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
-import { robotQuestion } from '../robot-helper';
+import { createRobotQuestion } from '../robot-helper';
 import { Recorder } from '../routines/recorder';
 import type { Session } from '../session';
 import { element, setText, showMessage } from './canvas';
@@ -40,14 +40,14 @@ export class RoutinesView {
   /** The index of the dragged step, and its new index if it is dropped now; null without a drag. */
   private drag: { from: number; to: number } | null = null;
   /** Asks for the predicted path. */
-  private readonly pathQuestion = robotQuestion((robot, question: OnFloor & { routine: string }) => robot.round(question), (path) => this.drawPath(path));
+  private readonly pathQuestion = createRobotQuestion((robot, question: OnFloor & { routine: string }) => robot.round(question), (path) => this.drawPath(path));
 
   constructor(
     private readonly session: Session,
     private readonly text: RobotText,
     writer: Writer,
   ) {
-    const onClick = (id: string, act: () => void) => element(`routine-${id}`).addEventListener('click', act);
+    const onClick = (id: string, action: () => void) => element(`routine-${id}`).addEventListener('click', action);
     this.panel.addEventListener('toggle', () => this.show());
     this.routineList.addEventListener('change', () => this.show());
     onClick('record', () => this.toggleRecording());
@@ -90,7 +90,7 @@ export class RoutinesView {
     this.pathQuestion.ask({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
 
-  private readonly say = (text: string): void => setText(element('routine-said'), text);
+  private readonly setMessage = (text: string): void => setText(element('routine-said'), text);
 
   /** The chosen routine, with its steps in the order to which the user is dragging them; null without a routine. */
   private get chosenRoutine(): Routine | null {
@@ -108,20 +108,20 @@ export class RoutinesView {
     button.setAttribute('aria-pressed', String(!steps));
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
     this.offerToKeep(steps ?? []);
-    if (steps?.length === 0) this.say('Nothing is recorded: the robot has not walked.');
+    if (steps?.length === 0) this.setMessage('Nothing is recorded: the robot has not walked.');
     this.showRecording();
   }
 
   /** Shows the steps recorded so far. */
   private showRecording(): void {
-    if (this.recorder) this.say(`Recording: ${this.recorder.steps(this.session.clock).join(', ') || 'drive now'}`);
+    if (this.recorder) this.setMessage(`Recording: ${this.recorder.steps(this.session.clock).join(', ') || 'drive now'}`);
   }
 
   /** Offers to store recorded steps under a name; without steps, hides the offer. */
   private offerToKeep(steps: string[]): void {
     this.recordedSteps = steps;
     element('routine-recorded').hidden = steps.length === 0;
-    this.say(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
+    this.setMessage(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
     if (steps.length === 0) return;
     const takenNames = new Set(Robot.routines(this.text.draft).map(({ name }) => name));
     const names = ['patrol', ...Array.from(takenNames, (_, n) => `patrol-${n + 2}`)];
@@ -132,10 +132,10 @@ export class RoutinesView {
   private async keepRecorded(): Promise<void> {
     const name = this.nameInput.value.trim().replaceAll(' ', '-');
     const { draft } = this.text;
-    if (Robot.routines(draft).some((routine) => routine.name === name)) return this.say(`${name} is there already: give it another name.`);
+    if (Robot.routines(draft).some((routine) => routine.name === name)) return this.setMessage(`${name} is there already: give it another name.`);
     const { text, refusal } = Robot.putSteps(draft, name, this.recordedSteps);
     // A routine with a mistake in a step is stored anyway: the step's block shows the mistake.
-    if (refusal && refusal.key !== `routine.${name}.steps`) return this.say(refusal.refused);
+    if (refusal && refusal.key !== `routine.${name}.steps`) return this.setMessage(refusal.refused);
     this.offerToKeep([]);
     await this.text.loadText(text);
     this.routineList.value = name;
@@ -151,7 +151,7 @@ export class RoutinesView {
 
   /** Replaces the steps of the chosen routine. */
   private async replaceSteps(steps: string[], name = this.routineList.value): Promise<void> {
-    this.say('');
+    this.setMessage('');
     await this.text.loadText(Robot.putSteps(this.text.draft, name, steps).text);
   }
 
@@ -203,11 +203,11 @@ export class RoutinesView {
     const input = make('input', { type: 'text', spellcheck: false, autocomplete: 'off', maxLength: 63, ariaLabel: `Step ${index + 1}` });
     const block = make('li', {}, grip, input);
     input.addEventListener('change', () => void this.replaceSteps(this.chosenRoutine?.steps.with(index, input.value.trim()) ?? []));
-    const addButton = (text: string, label: string, act: () => Promise<void>, nextIndex: () => number) => {
+    const addButton = (text: string, label: string, action: () => Promise<void>, nextIndex: () => number) => {
       const buttonElement = make('button', { type: 'button', ariaLabel: `${label} ${index + 1}` }, text);
       block.append(buttonElement);
       // The focus follows the step to its new index.
-      buttonElement.addEventListener('click', () => void act().then(() => this.findButton(nextIndex(), label)?.focus()));
+      buttonElement.addEventListener('click', () => void action().then(() => this.findButton(nextIndex(), label)?.focus()));
     };
     addButton('↑', 'Move up step', () => this.moveStep(index, index - 1), () => Math.max(0, index - 1));
     addButton('↓', 'Move down step', () => this.moveStep(index, index + 1), () => Math.min(index + 1, this.stepList.children.length - 1));

@@ -4,7 +4,7 @@ import { effect } from '@preact/signals-core';
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
 import { FREQUENCY_HZ } from '../uno/board';
-import { element, polyline, setText, surface } from './canvas';
+import { element, polyline, setText, prepareSurface } from './canvas';
 import { make } from './make';
 import { palette, servoColour } from './palette';
 import { isShown } from './rooms';
@@ -92,27 +92,27 @@ export class ScopeView {
 
   /** Draws the pulses up to the cycle `currentCycle`, which is at the right edge. */
   draw(currentCycle: number): void {
-    const area = surface(this.canvas);
+    const area = prepareSurface(this.canvas);
     if (!area) return;
-    const { pen, width, height } = area;
+    const { context, width, height } = area;
     const rowHeight = height / 4;
     const xOf = (cycle: number) => width * (1 - (currentCycle - cycle) / SPAN_CYCLES);
     for (let servo = 0; servo < 4; servo++) {
       const lowY = (servo + 1) * rowHeight - 3;
       const highY = servo * rowHeight + 5;
-      pen.strokeStyle = palette().grid;
-      pen.lineWidth = 1;
-      pen.strokeRect(-1, servo * rowHeight, width + 2, rowHeight);
+      context.strokeStyle = palette().grid;
+      context.lineWidth = 1;
+      context.strokeRect(-1, servo * rowHeight, width + 2, rowHeight);
       if (!this.hasPulses) continue;
-      pen.strokeStyle = servoColour(servo);
-      pen.lineWidth = 2;
-      pen.beginPath();
+      context.strokeStyle = servoColour(servo);
+      context.lineWidth = 2;
+      context.beginPath();
       const edges = this.pulses
         .filter((pulse) => pulse.servo === servo)
         .map(({ riseCycle, widthCycles }) => [xOf(riseCycle), xOf(riseCycle + widthCycles)])
         .filter(([, to]) => to >= 0);
-      polyline(pen, [0, lowY], ...edges.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
-      pen.stroke();
+      polyline(context, [0, lowY], ...edges.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
+      context.stroke();
     }
   }
 }

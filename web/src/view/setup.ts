@@ -128,7 +128,7 @@ export class Setup implements StepTools {
     this.isUncalibrated = false;
     this.isLost = isGone && !this.dialog.hidden;
     this.dropAction();
-    if (this.isLost) this.say(LOST_MESSAGE);
+    if (this.isLost) this.setMessage(LOST_MESSAGE);
     this.update();
   }
 
@@ -137,7 +137,7 @@ export class Setup implements StepTools {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
       this.dropAction(isChanged);
-      this.say(isChanged ? 'The board has restarted. What was not saved is lost.' : 'The board has restarted.');
+      this.setMessage(isChanged ? 'The board has restarted. What was not saved is lost.' : 'The board has restarted.');
     }
     if (!this.dialog.hidden && !this.isBusy) this.redraw();
   }
@@ -225,13 +225,13 @@ export class Setup implements StepTools {
     this.isAutomatic = isAutomatic;
     const actionNumber = ++this.actionCount;
     this.setBusy(true);
-    this.say('');
+    this.setMessage('');
     this.runningAction = work()
       .catch(messageOf)
       .then((message) => {
         if (actionNumber !== this.actionCount) return;
         this.setBusy(false);
-        this.say(message);
+        this.setMessage(message);
         this.update();
         const { waitingAction } = this;
         this.waitingAction = null;
@@ -244,7 +244,7 @@ export class Setup implements StepTools {
     this.dialog.setAttribute('aria-busy', String(isBusy));
   }
 
-  private readonly say = (text: string): void => setText(this.message, text);
+  private readonly setMessage = (text: string): void => setText(this.message, text);
 
   readonly goTo = (name: string): void => {
     const step = STEPS.find((candidate) => candidate.name === name);
@@ -261,7 +261,7 @@ export class Setup implements StepTools {
       step.reset?.();
     }
     this.step = step;
-    if (!this.isBusy) this.say('');
+    if (!this.isBusy) this.setMessage('');
     this.redraw();
     this.title.focus({ preventScroll: true });
     if (!step.needsRobot || !this.session.isFirmwareAnswering || this.isLost) return;

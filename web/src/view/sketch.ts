@@ -1,19 +1,19 @@
 // A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused while
 // the user drags.
 import type { Edits, Length, Scene, Point } from '../robot';
-import { robotQuestion } from '../robot-helper';
-import type { RobotFunctions } from '../robot-worker';
+import { createRobotQuestion } from '../robot-helper';
+import type { RobotWorkerApi } from '../robot-worker';
 import type { Session } from '../session';
 import { bars, type Joint, joints } from '../sketch/joints';
 import { element } from './canvas';
 import type { FitView } from './fit';
 import { LengthSlider } from './length-slider';
-import { setAttributes, shape } from './make';
+import { setAttributes, makeSvg } from './make';
 import { followShownRobot } from './rooms';
 import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 
-type Question = Parameters<RobotFunctions['lengths']>[0];
-type Answer = ReturnType<RobotFunctions['lengths']>;
+type Question = Parameters<RobotWorkerApi['lengths']>[0];
+type Answer = ReturnType<RobotWorkerApi['lengths']>;
 
 /** Movement of the pointer, in CSS pixels, beyond which a press is a drag. */
 const DRAG_THRESHOLD_PX = 3;
@@ -24,10 +24,10 @@ export class Sketch {
   private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
   private readonly message = element('sketch-said');
   private readonly symmetryBox = element<HTMLInputElement>('alike');
-  private readonly barGroup = this.picture.appendChild(shape('g', {}));
-  private readonly jointGroup = this.picture.appendChild(shape('g', {}));
+  private readonly barGroup = this.picture.appendChild(makeSvg('g', {}));
+  private readonly jointGroup = this.picture.appendChild(makeSvg('g', {}));
   /** Asks for a drawing of the robot with other lengths. */
-  private readonly robotQuestion = robotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
+  private readonly robotQuestion = createRobotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
   private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.askRobot());
   /** The dragged joint, as it was at the start of the drag; null without a drag. */
   private draggedJoint: Joint | null = null;
@@ -110,7 +110,7 @@ export class Sketch {
         const [[x1, y1], [x2, y2]] = [toPicture(from), toPicture(to)];
         const length = lengths.get(key);
         const title = length ? `${length.label} (${key.replace('links.', '')}): ${length.value} ${length.unit}` : key;
-        const line = shape('line', { x1, y1, x2, y2, 'data-key': key }, shape('title', {}, title));
+        const line = makeSvg('line', { x1, y1, x2, y2, 'data-key': key }, makeSvg('title', {}, title));
         line.addEventListener('click', () => this.selectInput(key));
         return line;
       }),
@@ -136,7 +136,7 @@ export class Sketch {
       if (pressPoint && Math.hypot(clientX - pressPoint[0], clientY - pressPoint[1]) > DRAG_THRESHOLD_PX) pressPoint = null;
       return this.draggedJoint === joint && pressPoint === null;
     };
-    const mark = shape('circle', { cx, cy, r: 3.6, 'data-joint': joint.name }, shape('title', {}, joint.name));
+    const mark = makeSvg('circle', { cx, cy, r: 3.6, 'data-joint': joint.name }, makeSvg('title', {}, joint.name));
     mark.addEventListener('pointerdown', (event) => {
       if (this.isDragEnding) return;
       mark.setPointerCapture(event.pointerId);

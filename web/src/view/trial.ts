@@ -1,8 +1,8 @@
 // The trial of an edited gait by a simulation: its figures, the nearest valid values if it is refused, and the buttons
 // that use the gait.
-import { takeGait, tryGait } from '../gaits/try-gait';
+import { applyGait, tryGait } from '../gaits/try-gait';
 import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
-import { robotQuestion } from '../robot-helper';
+import { createRobotQuestion } from '../robot-helper';
 import type { Session } from '../session';
 import { element, setText } from './canvas';
 import { button } from './make';
@@ -42,7 +42,7 @@ const OFFER_LABELS: Record<Alternative, (value: number) => string> = {
 };
 
 export class TrialView {
-  private readonly trialQuestion = robotQuestion<OnFloor & { gait: EditedGait }, Trial | NoTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
+  private readonly trialQuestion = createRobotQuestion<OnFloor & { gait: EditedGait }, Trial | NoTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
   /** The last answer; null if the gait was refused. */
   private trial: Trial | null = null;
 
@@ -65,7 +65,7 @@ export class TrialView {
   }
 
   /** Shows a message beside the editor's buttons. */
-  readonly say = (text: string): void => setText(this.element('said'), text);
+  readonly setMessage = (text: string): void => setText(this.element('said'), text);
 
   private element<E extends HTMLElement = HTMLElement>(name: string): E {
     return element<E>(`${this.editor.prefix}-${name}`);
@@ -85,34 +85,34 @@ export class TrialView {
     this.element('instead').replaceChildren(
       ...(refusal?.instead ?? []).map(({ what, value }) => button(OFFER_LABELS[what](value), () => this.editor.change(what, value))),
     );
-    this.say('');
+    this.setMessage('');
   }
 
   private async tryEditedGait(): Promise<void> {
     const gait = this.editor.editedGait();
     if (!gait) return;
-    this.say('The robot restarts with this gait…');
+    this.setMessage('The robot restarts with this gait…');
     const refusal = await tryGait(this.session, gait);
-    this.say(refusal?.refused ?? `It does ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
+    this.setMessage(refusal?.refused ?? `It does ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
   }
 
   private async writeToBoard(): Promise<void> {
     const gait = this.editor.editedGait();
     if (!gait) return;
     const { session } = this;
-    const refusal = session.isReal ? await takeGait(session, gait) : null;
-    if (refusal) return this.say(refusal.refused);
+    const refusal = session.isReal ? await applyGait(session, gait) : null;
+    if (refusal) return this.setMessage(refusal.refused);
     const message = this.element('said');
     if (!(await this.writer.writeRobot({ message, progress: this.element<HTMLProgressElement>('progress') }))) return;
-    this.say(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
+    this.setMessage(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
   }
 
   private async copyTable(): Promise<void> {
     try {
       await navigator.clipboard.writeText(this.trial?.table ?? '');
-      this.say('The table for robot.toml is copied.');
+      this.setMessage('The table for robot.toml is copied.');
     } catch {
-      this.say('The browser does not let the page copy; mark the table and copy it by hand.');
+      this.setMessage('The browser does not let the page copy; mark the table and copy it by hand.');
     }
   }
 }

@@ -6,7 +6,7 @@ import { button, make, paragraph } from './make';
 /** A button that solves a problem. */
 export interface Remedy {
   label: string;
-  act: () => void;
+  action: () => void;
 }
 
 export class Troubles {
@@ -14,7 +14,7 @@ export class Troubles {
   private readonly lines = new Map<Cause, HTMLElement>();
 
   /** Shows the message for a cause in place of its previous one; null removes it. */
-  say(cause: Cause, message: string | null, remedy: Remedy | null = null): void {
+  setMessage(cause: Cause, message: string | null, remedy: Remedy | null = null): void {
     const previousLine = this.lines.get(cause);
     if (message !== null && previousLine?.firstChild?.textContent === message) return;
     previousLine?.remove();
@@ -24,7 +24,7 @@ export class Troubles {
   }
 
   private addLine(cause: Cause, message: string, remedy: Remedy | null): HTMLElement {
-    const buttons = [...(remedy ? [button(remedy.label, remedy.act)] : []), button('Dismiss', () => this.say(cause, null))];
+    const buttons = [...(remedy ? [button(remedy.label, remedy.action)] : []), button('Dismiss', () => this.setMessage(cause, null))];
     const line = paragraph(make('span', {}, message), ...buttons);
     this.box.append(line);
     return line;

@@ -1,6 +1,6 @@
 // The controls of the simulated world: leg drive, feet, floor, mass, servos, supply voltage and the contacts at the
 // robot's inputs.
-import { type Floor, type Kind, lags, type ServoModel } from '../robot';
+import { type Floor, type Kind, canLag, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { make } from './make';
@@ -105,7 +105,7 @@ export class World {
     this.sliderOf('friction').disabled = !isElastic;
     this.sliderOf('mass').disabled = !isElastic && floor.twist === 0;
     this.sliderOf('leaf').disabled = floor.twist === 0;
-    element('rigid-note').hidden = isElastic || lags(floor) || floor.twist !== 0;
+    element('rigid-note').hidden = isElastic || canLag(floor) || floor.twist !== 0;
   }
 
   private readonly showVolts = (input: HTMLInputElement): void => this.showText(input, input.valueAsNumber.toFixed(2));

@@ -1,7 +1,7 @@
 // The drawing of the robot for the first connection, from above with forward upward: each servo, the direction of its
 // crank, and an arrow for a turn. The body is drawn shorter than it is, so that the cranks are large.
 import type { Description, Four, Scene, Point } from '../../robot';
-import { shape } from '../make';
+import { makeSvg } from '../make';
 
 /** The places of the servos A1 to A4 in the robot. */
 export const SERVO_PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
@@ -26,7 +26,7 @@ function pointAt([x, y]: Point, length: number, degrees: number): Point {
   return [x + length * Math.cos(degrees * RADIANS_PER_DEG), y - length * Math.sin(degrees * RADIANS_PER_DEG)];
 }
 
-const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => shape('line', { class: className, x1, y1, x2, y2 });
+const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => makeSvg('line', { class: className, x1, y1, x2, y2 });
 
 /** Makes an arrow about a shaft. It begins at the angle `begin` in deg, and has the direction of the turn `turn`. */
 function makeArrow(shaft: Point, radius: number, begin: number, turn: number): SVGElement[] {
@@ -35,9 +35,9 @@ function makeArrow(shaft: Point, radius: number, begin: number, turn: number): S
   const [x1, y1] = pointAt(shaft, radius, begin);
   const [x2, y2] = pointAt(shaft, radius, end);
   // SVG's sweep flag is 0 for counter-clockwise, since y is downward.
-  const arc = shape('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turn > 0 ? 0 : 1} ${x2} ${y2}` });
+  const arc = makeSvg('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turn > 0 ? 0 : 1} ${x2} ${y2}` });
   const headPoints = [pointAt(shaft, radius + 6, end - direction * 9), [x2, y2], pointAt(shaft, radius - 6, end - direction * 9)];
-  return [arc, shape('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
+  return [arc, makeSvg('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
 }
 
 /** Makes the drawing of the robot; `selected` is the servo to highlight, null for none. */
@@ -51,37 +51,37 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
   const viewHalfHeight = Math.max(HALF_LENGTH_MM + crankLength, halfLength) + 8;
   const angles = servos.map(({ neutral }, n) => `${servoName(n)}: ${neutral.toFixed(1)}°`).join('; ');
   const arrowText = selected?.turnDeg ? ` An arrow shows A${selected.servo + 1} turning ${selected.turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
-  const svg = shape('svg', {
+  const svg = makeSvg('svg', {
     class: 'robot-drawing',
     viewBox: `${-viewHalfWidth} ${-viewHalfHeight} ${2 * viewHalfWidth} ${2 * viewHalfHeight}`,
     role: 'img',
     'aria-label': `The robot from above, ahead is up. Where the cranks point, from its right, counter-clockwise: ${angles}.${arrowText}`,
   });
   svg.append(
-    shape('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
+    makeSvg('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
     makeLine('ahead', [0, 16], [0, -16]),
-    shape('polyline', { class: 'ahead', points: '-6,-8 0,-16 6,-8' }),
-    shape('text', { x: 0, y: 28 }, 'ahead'),
+    makeSvg('polyline', { class: 'ahead', points: '-6,-8 0,-16 6,-8' }),
+    makeSvg('text', { x: 0, y: 28 }, 'ahead'),
   );
   shaftPoints.forEach((shaft, n) => {
     const { neutral, pin } = servos[n];
     const isSelected = selected?.servo === n;
-    const group = shape('g', { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` });
+    const group = makeSvg('g', { class: `servo a${n + 1}${selected && !isSelected ? ' other' : ''}` });
     const tip = pointAt(shaft, crankLength, neutral);
     group.append(makeLine('zero', shaft, pointAt(shaft, crankLength * 0.6, 0)), makeLine('crank', shaft, tip));
     if (isSelected && selected.turnDeg !== null) {
       group.append(makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + selected.turnDeg)), ...makeArrow(shaft, crankLength * 0.75, neutral + Math.sign(selected.turnDeg) * 8, selected.turnDeg));
     }
-    group.append(shape('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
+    group.append(makeSvg('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
     // The text is outside the arrow, which may reach as far as the crank.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + crankLength + 6);
     const y = shaft[1] + Math.sign(shaft[1]) * crankLength * 0.4;
     const side = isLeft ? 'left' : 'right';
     group.append(
-      shape('text', { class: `name ${side}`, x, y: y - 5 }, `A${n + 1}`),
-      shape('text', { class: side, x, y: y + 7 }, `${neutral.toFixed(1)}°`),
-      shape('text', { class: side, x, y: y + 19 }, `pin D${pin}`),
+      makeSvg('text', { class: `name ${side}`, x, y: y - 5 }, `A${n + 1}`),
+      makeSvg('text', { class: side, x, y: y + 7 }, `${neutral.toFixed(1)}°`),
+      makeSvg('text', { class: side, x, y: y + 19 }, `pin D${pin}`),
     );
     svg.append(group);
   });

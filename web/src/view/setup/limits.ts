@@ -27,7 +27,7 @@ export class LimitsStep implements Step {
     const limit = guide?.calibration.servos[servo].limit ?? null;
     const currentAngle = this.lastTurned?.servo === servo ? this.lastTurned.degrees : session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
-    const makeBox = (label: string, value: number, act: (value: number) => void) => numberBox(label, value, '0.01', act);
+    const makeBox = (label: string, value: number, action: (value: number) => void) => numberBox(label, value, '0.01', action);
     return [
       paragraph(`Turn ${servoName(servo)} until a part of your print is about to touch another, and let it go no further. Where nothing touches, there is nothing to do.`),
       row(

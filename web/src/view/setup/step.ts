@@ -18,7 +18,7 @@ export interface StepTools {
   /** Writes the page's robot, alone or with the firmware. */
   write(content: WriteContent): void;
   /** Runs an action with the robot's guide; shows the returned message or the reason of a failure. */
-  run(act: (guide: Guide) => Promise<string>): void;
+  run(action: (guide: Guide) => Promise<string>): void;
   /** Lets the robot stand, with the servos that were turned back at neutral. */
   stand(): void;
   /** Sets the calibration in the text of a file named `name`, without saving it in the board. */
