@@ -115,6 +115,7 @@ impl<T> Derivative<T> {
     }
 }
 
+/// Converts radians to degrees.
 fn degrees_of(radians: f64) -> f64 {
     radians * (180.0 / PI)
 }
@@ -265,6 +266,7 @@ mod tests {
         robot.solve(&Pose::from(later_pose)).ok()
     }
 
+    /// Random rates up to 300 deg/s and accelerations up to 2000 deg/s^2.
     fn any_motion() -> impl Strategy<Value = ServoMotion> {
         let four_ranges_of = |max: f64| [-max..max, -max..max, -max..max, -max..max];
         (four_ranges_of(300.0), four_ranges_of(2000.0))

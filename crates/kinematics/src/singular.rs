@@ -146,6 +146,7 @@ mod tests {
     use super::*;
     use crate::reference::PAPER_HEAD;
 
+    /// The margin that vanishes at singularities of a kind, at two crank angles; `None` if the loop does not close.
     fn margin_of(five_bar: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
         let pose = five_bar.forward(left, right).ok()?;
         Some(kind.margin(&pose))

@@ -70,6 +70,7 @@ impl Robot {
     /// # Errors
     /// Fails if the table contains a mistake, if the gait violates a limit, or if the robot's section gets too large.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
+        /// The first gait, without which no robot is valid.
         const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
         // Parsed alone first, because the message of a syntax error may cite a second line number.
         file::parse(table, |_| Ok(()))?;

@@ -28,9 +28,9 @@ pub struct Status {
     pub vcc: Option<f64>,
     /// Supply of the servos, volts; `None` if it is not measured.
     pub rail: Option<f64>,
-    /// Number of pulse edges that came late.
+    /// Number of late pulse edges.
     pub late_edges: u32,
-    /// Number of received bytes that were lost.
+    /// Number of bytes that were lost on reception.
     pub lost_bytes: u32,
     /// Cause of the last reset.
     pub reset_cause: String,

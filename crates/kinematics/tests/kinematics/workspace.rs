@@ -5,6 +5,7 @@ use proptest::prelude::*;
 
 use crate::reference::PAPER_HEAD;
 
+/// Random five-bars with equal arms.
 fn any_symmetrical_five_bar() -> impl Strategy<Value = FiveBar> {
     (5.0..100.0, 5.0..100.0, 0.0..150.0f64)
         .prop_map(|(crank, coupler, base)| FiveBar::new([base, crank, coupler, coupler, crank]))

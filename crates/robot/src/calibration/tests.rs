@@ -40,9 +40,9 @@ fn the_file_has_one_readable_line_for_each_setting() {
 #[test]
 fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
     let valid_text = example_calibration().to_toml();
-    let error_text = |from: &str, to: &str| {
-        assert!(valid_text.contains(from), "{from}");
-        let invalid_text = valid_text.replacen(from, to, 1);
+    let error_text = |old: &str, new: &str| {
+        assert!(valid_text.contains(old), "{old}");
+        let invalid_text = valid_text.replacen(old, new, 1);
         let error =
             Calibration::parse(&invalid_text, "a.toml").expect_err("the changed text is invalid");
         error.to_string()
@@ -59,7 +59,7 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
         .position(|line| line == "trim = -3.25")
         .expect("servo A1 has this trim");
     let trim_prefix = format!("a.toml:{line}: servo.A1.trim ");
-    for (from, to, message) in [
+    for (old, new, message) in [
         (
             "calibration 1",
             "calibration 2",
@@ -99,9 +99,9 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
             "a.toml:6: deadman must be a whole number of ms".to_owned(),
         ),
     ] {
-        assert_eq!(error_text(from, to), message);
+        assert_eq!(error_text(old, new), message);
     }
-    for (from, to, phrase) in [
+    for (old, new, phrase) in [
         (
             "trim = -3.25",
             "trim = nan",
@@ -134,7 +134,7 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
         ),
         ("format = \"", "format = \"x\n", "lacks the = between"),
     ] {
-        let message = error_text(from, to);
+        let message = error_text(old, new);
         assert!(message.contains(phrase), "{message} / {phrase}");
     }
 }

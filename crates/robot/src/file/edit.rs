@@ -275,6 +275,7 @@ fn line_end(text: &str, start: usize) -> usize {
 mod tests {
     use super::*;
 
+    /// A robot.toml with two tables.
     const TEXT: &str =
         "[links]  # lengths\nl0 = 20.0 # base\nl1 = 30\nname = \"x\"\n[servo.A1]\nneutral = 1.5\n";
 
@@ -372,7 +373,7 @@ mod tests {
 
     #[test]
     fn a_string_is_replaced_or_a_missing_one_is_added() {
-        const DRIVE: &str = "[leg.drive] # bars\nkind = \"rigid\" # or not\n";
+        const DRIVE: &str = "[leg.drive] # links\nkind = \"rigid\" # or a strut\n";
         let changed = with_string(DRIVE, "leg.drive.kind", "strut").expect("the key can be set");
         assert_eq!(changed, DRIVE.replace("rigid", "strut"));
         let added = with_string("[leg]\nmount = 0.0\n", "leg.drive.kind", "strut")
@@ -386,14 +387,15 @@ mod tests {
 
     #[test]
     fn a_gait_is_removed_or_replaced_with_all_its_tables_and_no_other() {
-        const GAITS: &str = "[gait.look]\nperiod = 4.0\n[gait.look.head]\nx = [[1.0, 0.0]]\n# the next\n[gait.look-up]\nlike = \"walk\"\n";
-        let rest = "# the next\n[gait.look-up]\nlike = \"walk\"\n";
+        const GAITS: &str = "[gait.look]\nperiod = 4.0\n[gait.look.head]\nx = [[1.0, 0.0]]\n# next table\n[gait.look-up]\nlike = \"walk\"\n";
+        let rest = "# next table\n[gait.look-up]\nlike = \"walk\"\n";
         assert_eq!(without_gait(GAITS, "look"), rest);
         assert_eq!(without_gait(rest, "look"), rest);
         let replaced = with_gait(GAITS, "look", "[gait.look]\nperiod = 5.0\n");
         assert_eq!(replaced, format!("[gait.look]\nperiod = 5.0\n{rest}"));
     }
 
+    /// A robot.toml with two routines.
     const ROUTINES: &str = "name = \"x\"\n\n[routine.patrol] # by night\nsteps = [\n  \"walk 4\", # on\n  \"left 6\",\n]\nrepeat = 3 # rounds\n\n[routine.about]\nsteps = ['left 12']\n";
 
     /// The names and steps of a text's routines.
@@ -433,7 +435,7 @@ mod tests {
         let steps = to_strings(&["walk until \"nose\"", "wait\\", "rest"]);
         let changed = with_steps(ROUTINES, "patrol", &steps);
         assert_eq!(names_and_steps(&changed)[0].1, steps);
-        let start = ROUTINES.find("[\n").expect("a list of steps begins here");
+        let start = ROUTINES.find("[\n").expect("the text has a list of steps");
         assert!(changed.starts_with(&ROUTINES[..start]));
         assert!(
             changed.ends_with(

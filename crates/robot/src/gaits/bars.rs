@@ -20,7 +20,7 @@ pub struct Bars {
     pub duty: f64,
     /// Largest sweep of a leg, deg.
     pub amplitude: f64,
-    /// Phase at which each stance begins, 0 to 1, in servo order: LF, RF, RH, LH. If legs hold,
+    /// Phase at which each stance starts, 0 to 1, in servo order: LF, RF, RH, LH. If legs hold,
     /// only the order of the phases matters: it is the order of the swings.
     pub start: [f64; 4],
     /// Each leg's amplitude as a share of `amplitude`; negative if the leg moves opposite to the others.
@@ -65,7 +65,7 @@ impl Bars {
     /// Returns the gait reversed in time: a gait that walks forward becomes one that walks backward.
     ///
     /// A wave's stance and swing are each point-symmetric about their middle. So a wave played
-    /// backwards is the negated wave, whose stance begins where the original one ends. A held gait
+    /// backwards is the negated wave, whose stance starts where the original one ends. A held gait
     /// played backwards is the negated gait with the opposite order of legs; all four legs are
     /// shifted in time equally, which makes no difference.
     pub fn reversed(&self) -> Self {

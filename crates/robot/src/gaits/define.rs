@@ -315,6 +315,7 @@ fn build_gait(
     Ok(gait.scaled(read_gains(table)?))
 }
 
+/// Reads the duration of a cycle, s. Without a default, the key is required.
 fn read_period(table: &Section, default: Option<f64>) -> Checked<f64> {
     match default {
         Some(period) => table.number_or("period", period, 0.2, 60.0, "s"),
@@ -322,6 +323,7 @@ fn read_period(table: &Section, default: Option<f64>) -> Checked<f64> {
     }
 }
 
+/// Reads the largest sweep, deg.
 fn read_amplitude(table: &Section) -> Checked<f64> {
     table.number("amplitude", 0.0, 90.0, "deg")
 }

@@ -9,7 +9,7 @@ use crate::units::STEPS_PER_DEGREE;
 pub struct Stride {
     /// The shape of the movement.
     pub waveform: Waveform,
-    /// Phase at which the waveform begins, 0 to 1.
+    /// Phase at which the waveform starts, 0 to 1.
     pub start: f64,
     /// Sweep at which the waveform is 1, deg; negative if the leg moves opposite to the others.
     pub amplitude: f64,

@@ -125,7 +125,7 @@ impl ServoType {
     }
 }
 
-/// Finds the servo type that the key `model` names; ignores case, dashes and blanks.
+/// Finds the servo type that the key `model` names; ignores case, hyphens and spaces.
 fn read_model(section: &Section) -> Checked<ServoType> {
     let simplify = |name: &str| name.to_ascii_lowercase().replace(['-', ' '], "");
     let model_name = section.text("model")?;

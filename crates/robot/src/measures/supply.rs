@@ -142,7 +142,9 @@ const NO_RAIL: Thresholds = Thresholds {
 /// because the pulses end at a rail of 0 V. The rail is assumed to be at 5 V, or at 0.5 V above its first threshold if
 /// that is more.
 pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
+    /// Excess of the rail over its first threshold.
     const RESERVE_MV: f64 = 500.0;
+    /// Supply of the board, and the lowest voltage of the rail.
     const BOARD_MV: f64 = 5_000.0;
     let ratio = f64::from(supplies.rail_reference_mv) / f64::from(supplies.reference_mv);
     let mv = f64::from(supplies.rail.slow_mv) + RESERVE_MV;
@@ -199,6 +201,7 @@ fn read_thresholds(
     Ok([slow, stop, rest])
 }
 
+/// Converts thresholds from volts to millivolts.
 fn thresholds_in_mv([slow, stop, rest]: [f64; 3]) -> Thresholds {
     Thresholds {
         slow_mv: to_millivolts(slow),

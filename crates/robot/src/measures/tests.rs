@@ -12,17 +12,14 @@ fn refusal_of(changes: &[(&str, &str)]) -> String {
 #[test]
 fn each_coupler_must_be_long_enough_for_its_own_loop() {
     // With these lengths, the scales of head and tail are 256 steps per mm.
-    for (from, to) in [
+    for (old, new) in [
         ("l2 = 55.0", "l2 = 15.9"),
         ("l3 = 48.0", "l3 = 15.9"),
         ("l7 = 55.0", "l7 = 15.9"),
         ("l8 = 48.0", "l8 = 15.9"),
     ] {
-        let message = refusal_of(&[(from, to)]);
-        let key = from
-            .split(' ')
-            .next()
-            .expect("the change begins with a key");
+        let message = refusal_of(&[(old, new)]);
+        let key = old.split(' ').next().expect("the change begins with a key");
         assert!(
             message.contains(&format!("links.{key} is 15.9 mm, which is short"))
                 && message.contains("at least 16.1 mm"),
@@ -91,13 +88,13 @@ fn a_stroke_that_leaves_the_shorter_slider_no_length_is_refused() {
 
 #[test]
 fn a_leg_in_its_other_assembly_mode_is_refused() {
-    for (from, to, name, leg) in [
+    for (old, new, name, leg) in [
         ("neutral = 135.0", "neutral = 200.0", "left front", "leg_lf"),
         ("neutral = 47.0", "neutral = 350.0", "right front", "leg_rf"),
         ("neutral = 316.0", "neutral = 10.0", "right hind", "leg_rh"),
         ("neutral = 228.0", "neutral = 170.0", "left hind", "leg_lh"),
     ] {
-        let message = refusal_of(&[(from, to)]);
+        let message = refusal_of(&[(old, new)]);
         assert!(
             message.starts_with(&format!(
                 "in the neutral pose the {name} leg would lock: margin {leg} -"

@@ -124,7 +124,7 @@ fn a_byte_order_mark_changes_nothing() {
 }
 
 #[test]
-fn an_empty_file_asks_for_its_first_table() {
+fn an_empty_file_is_refused_for_its_missing_first_table() {
     let error = Robot::parse("")
         .expect_err("an empty file is refused")
         .to_string();
@@ -133,7 +133,7 @@ fn an_empty_file_asks_for_its_first_table() {
 
 #[test]
 fn values_at_the_ends_of_their_ranges_are_allowed() {
-    for (from, to) in [
+    for (old, new) in [
         ("min_us = 600.0", "min_us = 500.0"),
         ("max_us = 2400.0", "max_us = 2500"),
         ("us_per_degree = 10.0", "us_per_degree = -10.0"),
@@ -146,8 +146,8 @@ fn values_at_the_ends_of_their_ranges_are_allowed() {
             "[gait.walk-slow1]\nlike = \"walk\"\nperiod = 60\n[gait.walk]",
         ),
     ] {
-        if let Err(error) = paper_with(from, to) {
-            panic!("{to:?}: {error}");
+        if let Err(error) = paper_with(old, new) {
+            panic!("{new:?}: {error}");
         }
     }
 }

@@ -42,15 +42,18 @@ fn board_with_image() -> BoardDouble {
 /// The result of an upload, the events that it reported, and the board afterwards.
 struct Run {
     result: Result<PageCounts, UploadError>,
+    /// The descriptions of the board's contents.
     reported_contents: Vec<String>,
     retry_count: usize,
     board: BoardDouble,
 }
 
+/// Uploads [`image`] to a board.
 fn run(board: BoardDouble) -> Run {
     run_with(board, &image())
 }
 
+/// Uploads an image to a board about which nothing is known.
 fn run_with(board: BoardDouble, image: &Image) -> Run {
     run_with_target(board, image, Target::default())
 }
@@ -211,6 +214,7 @@ fn a_board_that_never_answers_is_reset_four_times_and_not_written() {
 
 #[test]
 fn a_board_that_never_stops_sending_is_not_taken_for_a_boot_loader() {
+    /// A board that sends `x` without end.
     struct Talker;
     impl Board for Talker {
         async fn reset(&mut self, _baud: u32) -> Result<(), BoardError> {

@@ -35,9 +35,9 @@ fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, cra
     let mut text = text_before_gaits("unequal")
         .replacen("l13 = 51.0", "l13 = 57.0", 1)
         .replacen("l18 = 57.0", "l18 = 51.4", 1);
-    for (from, to) in limits {
-        assert!(text.contains(from), "{from}");
-        text = text.replacen(from, to, 1);
+    for (old, new) in limits {
+        assert!(text.contains(old), "{old}");
+        text = text.replacen(old, new, 1);
     }
     Robot::parse(&format!(
         "{text}{STAND}[gait.lean]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.75\namplitude = 17.0\nstart = {{ LH = 0.0, LF = 0.25, RH = 0.5, RF = 0.75 }}\ngain = {{ {legs} }}\n"
@@ -63,7 +63,7 @@ fn a_slider_that_reaches_its_end_on_one_side_only_is_named() {
         let robot = leaning_robot(is_right, &[]).expect("the leaning robot is valid");
         let gait = robot.gait("lean").expect("the robot has the gait lean");
         let (min_stroke, max_stroke) = slider_travels(&robot, gait)[usize::from(is_right)];
-        for (from, to, word) in [
+        for (old, new, word) in [
             (
                 "stroke_min = -19.0",
                 format!("stroke_min = {:.2}", min_stroke + 0.5),
@@ -75,7 +75,7 @@ fn a_slider_that_reaches_its_end_on_one_side_only_is_named() {
                 "above",
             ),
         ] {
-            let message = leaning_robot(is_right, &[(from, to)])
+            let message = leaning_robot(is_right, &[(old, new)])
                 .expect_err("the stroke is too small for the gait")
                 .to_string();
             let expected_start = format!(
@@ -202,12 +202,12 @@ fn both_ends_of_every_servos_travel_are_checked() {
         ("A3", "min_us = 700.0", "max_us = 2300.0", 1500.0),
         ("A4", "min_us = 590.0", "max_us = 2460.0", 1440.0),
     ] {
-        for (from, to) in [
+        for (old, new) in [
             (min_line, format!("min_us = {}", neutral - 9.0)),
             (max_line, format!("max_us = {}", neutral + 9.0)),
         ] {
-            let message = robot_with("unequal", &[(from, &to)])
-                .expect_err(&to)
+            let message = robot_with("unequal", &[(old, &new)])
+                .expect_err(&new)
                 .to_string();
             assert!(
                 message.starts_with(&format!(

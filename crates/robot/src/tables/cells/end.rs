@@ -42,6 +42,7 @@ pub(super) struct EndConditions {
 }
 
 impl EndConditions {
+    /// The conditions of one end of a robot, with the guard's limits.
     pub fn new(lizard: &Lizard, numbers: &Content, end: End) -> Self {
         let five_bar_lengths = &numbers.ends[end as usize];
         let Limits { type2, type1, leg } = numbers.limits;

@@ -24,6 +24,7 @@ pub(super) struct StrokeCondition {
 }
 
 impl StrokeCondition {
+    /// The condition of one side of a robot, with the guard's stroke.
     pub fn new(lizard: &Lizard, numbers: &Content, side: Side) -> Self {
         let core_slider = &numbers.sliders[side as usize];
         let slider = lizard.side(side);

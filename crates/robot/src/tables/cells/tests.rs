@@ -111,6 +111,7 @@ struct RobotWithMaps {
 }
 
 impl RobotWithMaps {
+    /// Computes the maps of a robot.
     fn of(name: &str, robot: &Robot) -> Self {
         Self {
             name: name.to_string(),
@@ -135,6 +136,7 @@ impl RobotWithMaps {
         }
     }
 
+    /// The maps, each with the conditions that it certifies.
     fn certified_maps(&self) -> [CertifiedMap<'_>; 4] {
         let certified_map = |map, servos, margins, slider| CertifiedMap {
             map,
