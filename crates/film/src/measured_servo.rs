@@ -266,32 +266,43 @@ impl HornPath {
         index_at(from)..index_at(to)
     }
 
-    /// The indices of the pictures in which the horn rests after an order, if the first order is at `begin`, s, and
-    /// each other one `interval` seconds after the one before it.
+    /// The indices of the pictures in which the horn rests after an order, if the first order is at
+    /// `first_order_seconds` and the interval between orders is `interval`, s.
     fn rest_indices(
         &self,
-        begin: f64,
+        first_order_seconds: f64,
         interval: f64,
         order_index: usize,
     ) -> std::ops::Range<usize> {
-        let [from, to] = REST_SHARES.map(|share| begin + interval * (order_index as f64 + share));
+        let [from, to] =
+            REST_SHARES.map(|share| first_order_seconds + interval * (order_index as f64 + share));
         self.indices_between(from, to)
     }
 
     /// The mean angle at which the horn rests after an order, deg; `None` if no picture shows it.
-    fn rest_angle(&self, begin: f64, interval: f64, order_index: usize) -> Option<f64> {
-        let indices = self.rest_indices(begin, interval, order_index);
+    fn rest_angle(
+        &self,
+        first_order_seconds: f64,
+        interval: f64,
+        order_index: usize,
+    ) -> Option<f64> {
+        let indices = self.rest_indices(first_order_seconds, interval, order_index);
         let sum = self.prefix_sums[indices.end] - self.prefix_sums[indices.start];
         (!indices.is_empty()).then(|| sum / indices.len() as f64)
     }
 
-    /// The share of the variance of the rest angles that the orders do not explain, if the first order is at `begin`,
-    /// s; `None` if too few rests are visible.
-    fn unexplained_share(&self, orders: &[Order], begin: f64, interval: f64) -> Option<f64> {
+    /// The share of the variance of the rest angles that the orders do not explain, if the first order is at
+    /// `first_order_seconds`; `None` if too few rests are visible.
+    fn unexplained_share(
+        &self,
+        orders: &[Order],
+        first_order_seconds: f64,
+        interval: f64,
+    ) -> Option<f64> {
         let pair_of = |i: usize| {
             Some((
                 orders[i].pulse_angle(),
-                self.rest_angle(begin, interval, i)?,
+                self.rest_angle(first_order_seconds, interval, i)?,
             ))
         };
         let pairs: Vec<(f64, f64)> = (0..orders.len()).filter_map(pair_of).collect();
@@ -302,12 +313,14 @@ impl HornPath {
             pairs.iter().map(component).sum::<f64>() / pairs.len() as f64
         };
         let (mean_order, mean_rest) = (mean_of(|pair| pair.0), mean_of(|pair| pair.1));
-        let mut sums = [0.0; 3];
+        let (mut order_square_sum, mut product_sum, mut rest_square_sum) = (0.0, 0.0, 0.0);
         for (a, b) in &pairs {
             let (a, b) = (a - mean_order, b - mean_rest);
-            sums = [sums[0] + a * a, sums[1] + a * b, sums[2] + b * b];
+            order_square_sum += a * a;
+            product_sum += a * b;
+            rest_square_sum += b * b;
         }
-        Some(1.0 - sums[1] * sums[1] / (sums[0] * sums[2]).max(1e-9))
+        Some(1.0 - product_sum * product_sum / (order_square_sum * rest_square_sum).max(1e-9))
     }
 
     /// Finds the time of the first order, s, for which the unexplained share is smallest; returns both.
@@ -318,9 +331,14 @@ impl HornPath {
             ((end - first + interval) / (SEARCH_STEP_SHARE * interval)).max(0.0) as usize;
         (0..=try_count)
             .map(|i| first - interval + i as f64 * SEARCH_STEP_SHARE * interval)
-            .filter_map(|begin| Some((self.unexplained_share(orders, begin, interval)?, begin)))
+            .filter_map(|first_order_seconds| {
+                Some((
+                    self.unexplained_share(orders, first_order_seconds, interval)?,
+                    first_order_seconds,
+                ))
+            })
             .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(share, begin)| (begin, share))
+            .map(|(share, first_order_seconds)| (first_order_seconds, share))
     }
 
     /// Finds the time of the first order, s.
@@ -333,12 +351,13 @@ impl HornPath {
                 turn: turn.max(0.0),
             });
         }
-        let is_explained = |best: &(f64, f64)| best.1 < MAX_UNEXPLAINED_SHARE;
-        if let Some((begin, _)) = self
+        let is_explained =
+            |(_, unexplained_share): &(f64, f64)| *unexplained_share < MAX_UNEXPLAINED_SHARE;
+        if let Some((first_order_seconds, _)) = self
             .find_best_first_order(orders, ORDER_INTERVAL)
             .filter(is_explained)
         {
-            return Ok(self.refine_first_order(begin));
+            return Ok(self.refine_first_order(first_order_seconds));
         }
         for multiple in INTERVAL_MULTIPLES {
             if self
@@ -357,38 +376,50 @@ impl HornPath {
     }
 
     /// Refines the time of the first order, s, from the times at which the large steps are half complete.
-    fn refine_first_order(&self, begin: f64) -> f64 {
-        let begin_by_step = |i: usize| {
+    fn refine_first_order(&self, first_order_seconds: f64) -> f64 {
+        let estimate_from_step = |i: usize| {
             let (from, to) = (
-                self.rest_angle(begin, ORDER_INTERVAL, i - 1)?,
-                self.rest_angle(begin, ORDER_INTERVAL, i)?,
+                self.rest_angle(first_order_seconds, ORDER_INTERVAL, i - 1)?,
+                self.rest_angle(first_order_seconds, ORDER_INTERVAL, i)?,
             );
             let middle = (from + to) / 2.0;
-            let indices = self.rest_indices(begin, ORDER_INTERVAL, i - 1).start
-                ..self.rest_indices(begin, ORDER_INTERVAL, i).end;
+            let indices = self
+                .rest_indices(first_order_seconds, ORDER_INTERVAL, i - 1)
+                .start
+                ..self
+                    .rest_indices(first_order_seconds, ORDER_INTERVAL, i)
+                    .end;
             let pairs = self.angles[indices].windows(2);
             let mut crossings = pairs.filter(|pair| (pair[0].1 < middle) != (pair[1].1 < middle));
             let pair = crossings.next()?;
-            let share = (middle - pair[0].1) / (pair[1].1 - pair[0].1);
-            let time = pair[0].0 + share * (pair[1].0 - pair[0].0);
+            let ((start_time, start_angle), (end_time, end_angle)) = (pair[0], pair[1]);
+            let share = (middle - start_angle) / (end_angle - start_angle);
+            let time = start_time + share * (end_time - start_time);
             Some(time - ORDER_INTERVAL * i as f64 - HALF_WAY_SECONDS)
         };
-        let mut begins: Vec<f64> = orders::large_step_indices()
-            .filter_map(begin_by_step)
+        let mut estimates: Vec<f64> = orders::large_step_indices()
+            .filter_map(estimate_from_step)
             .collect();
-        begins.sort_by(f64::total_cmp);
-        begins.get(begins.len() / 2).copied().unwrap_or(begin)
+        estimates.sort_by(f64::total_cmp);
+        estimates
+            .get(estimates.len() / 2)
+            .copied()
+            .unwrap_or(first_order_seconds)
     }
 
     /// The large steps, counter-clockwise and clockwise.
-    fn large_steps(&self, begin: f64, rests: &[Option<f64>]) -> [Vec<LargeStep>; 2] {
+    fn large_steps(&self, first_order_seconds: f64, rests: &[Option<f64>]) -> [Vec<LargeStep>; 2] {
         let mut steps = [Vec::new(), Vec::new()];
         for i in orders::large_step_indices() {
             let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
                 continue;
             };
-            let indices = self.rest_indices(begin, ORDER_INTERVAL, i - 1).end
-                ..self.rest_indices(begin, ORDER_INTERVAL, i).end;
+            let indices = self
+                .rest_indices(first_order_seconds, ORDER_INTERVAL, i - 1)
+                .end
+                ..self
+                    .rest_indices(first_order_seconds, ORDER_INTERVAL, i)
+                    .end;
             let angles = self.angles[indices]
                 .iter()
                 .map(|(time, angle)| (*time, angle - from));
@@ -400,7 +431,7 @@ impl HornPath {
     /// Finds the dead band from the small steps: the servo turns less than ordered by the width of the dead band.
     fn find_dead_band(
         &self,
-        begin: f64,
+        first_order_seconds: f64,
         orders: &[Order],
         rests: &[Option<f64>],
         gain: f64,
@@ -408,7 +439,8 @@ impl HornPath {
         // Deviations of single pictures from the mean of their rest.
         let (mut squares, mut degrees_of_freedom, mut picture_count) = (0.0, 0usize, 0usize);
         for (i, rest) in rests.iter().enumerate() {
-            let rest_angles = &self.angles[self.rest_indices(begin, ORDER_INTERVAL, i)];
+            let rest_angles =
+                &self.angles[self.rest_indices(first_order_seconds, ORDER_INTERVAL, i)];
             let Some(rest) = rest else { continue };
             squares += rest_angles
                 .iter()

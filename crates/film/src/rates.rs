@@ -24,9 +24,12 @@ const MIN_STEPS: usize = 2;
 /// Smallest number of pictures in a group, not counting the first picture of each step.
 const MIN_PICTURES: usize = 6;
 
-/// The pictures of a large step: times, s, and angles turned since the start of the step, deg, always positive.
+/// A large step, as the fit uses it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LargeStep(Vec<(f64, f64)>);
+pub(crate) struct LargeStep {
+    /// For each picture the time, s, and the angle turned since the start of the step, deg, always positive.
+    pictures: Vec<(f64, f64)>,
+}
 
 impl LargeStep {
     /// Selects the pictures that the fit uses: times, s, and angles since the start of a step of `step_deg` deg.
@@ -34,7 +37,9 @@ impl LargeStep {
         let [low, high] = USED_SHARE_RANGE.map(|share| share * step_deg.abs());
         let turns = pictures.map(|(time, angle)| (time, angle * step_deg.signum()));
         let before_braking = turns.take_while(|(_, angle)| *angle < high);
-        Self(before_braking.filter(|(_, angle)| *angle > low).collect())
+        Self {
+            pictures: before_braking.filter(|(_, angle)| *angle > low).collect(),
+        }
     }
 }
 
@@ -55,8 +60,8 @@ impl Rates {
     pub(crate) fn fit(groups: &[&[LargeStep]], expected_spin_up: f64) -> Option<Self> {
         let mut start = Vec::new();
         for group in groups {
-            let usable_steps = || group.iter().filter(|step| step.0.len() > 1);
-            let picture_count: usize = usable_steps().map(|step| step.0.len() - 1).sum();
+            let usable_steps = || group.iter().filter(|step| step.pictures.len() > 1);
+            let picture_count: usize = usable_steps().map(|step| step.pictures.len() - 1).sum();
             if usable_steps().count() < MIN_STEPS || picture_count < MIN_PICTURES {
                 return None;
             }
@@ -68,10 +73,10 @@ impl Rates {
             .iter()
             .enumerate()
             .flat_map(|(group, steps)| steps.iter().map(move |step| (group, step)))
-            .filter(|(_, step)| step.0.len() > 1)
+            .filter(|(_, step)| step.pictures.len() > 1)
             .collect();
         for (group, step) in &steps {
-            let (time, angle) = step.0[0];
+            let (time, angle) = step.pictures[0];
             start.push(time - angle / start[*group] - expected_spin_up);
         }
         let residuals = |parameters: &[f64], sigma: f64| {
@@ -81,14 +86,14 @@ impl Rates {
                 let residual_of = |(time, angle): &(f64, f64)| {
                     (angle_after(parameters[*group], time_constant, time - begin) - angle) / sigma
                 };
-                all_residuals.extend(step.0.iter().map(residual_of));
+                all_residuals.extend(step.pictures.iter().map(residual_of));
             }
             all_residuals
         };
         let first_fit =
             least_squares::fit(&start, |parameters| residuals(parameters, ANGLE_SIGMA))?;
-        let total_pictures: usize = steps.iter().map(|(_, step)| step.0.len()).sum();
-        let degrees_of_freedom = total_pictures
+        let total_picture_count: usize = steps.iter().map(|(_, step)| step.pictures.len()).sum();
+        let degrees_of_freedom = total_picture_count
             .checked_sub(steps.len() + group_count)
             .filter(|n| *n > 0)?;
         let sigma = ANGLE_SIGMA
@@ -137,8 +142,9 @@ impl Rates {
 
 /// The mean rate of a step with two pictures or more, deg/s.
 fn mean_rate(step: &LargeStep) -> f64 {
-    let ((from, a), (to, b)) = (step.0[0], step.0[step.0.len() - 1]);
-    (b - a) / (to - from)
+    let ((start_time, start_angle), (end_time, end_angle)) =
+        (step.pictures[0], step.pictures[step.pictures.len() - 1]);
+    (end_angle - start_angle) / (end_time - start_time)
 }
 
 /// The angle that a motor has turned some seconds after its start at full torque, deg; `time_constant` is that of its

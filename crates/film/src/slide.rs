@@ -118,6 +118,16 @@ struct Observation {
     heading: f64,
 }
 
+/// A point of a slide.
+struct SlidePoint {
+    /// Time of the picture, s.
+    seconds: f64,
+    /// Smoothed tilt of the board, rad.
+    tilt: f64,
+    /// Distance of the robot from its place of rest, mm.
+    distance: f64,
+}
+
 impl Slide {
     /// Measures the first slide of a film.
     ///
@@ -147,13 +157,13 @@ impl Slide {
                 }
             })
             .collect();
-        let largest_tilt = |observations: &[Observation]| {
+        let max_tilt = |observations: &[Observation]| {
             observations
                 .iter()
                 .map(|observation| observation.tilt)
                 .fold(0.0, f64::max)
         };
-        let angle = largest_tilt(&observations[..level_count]).to_degrees();
+        let angle = max_tilt(&observations[..level_count]).to_degrees();
         if angle > MAX_LEVEL_TILT {
             return Err(SlideTrouble::NotAtRest { angle });
         }
@@ -168,7 +178,7 @@ impl Slide {
         else {
             return Err(SlideTrouble::NotSlid {
                 distance: observations.iter().map(distance_of).fold(0.0, f64::max),
-                tilt: largest_tilt(&observations).to_degrees(),
+                tilt: max_tilt(&observations).to_degrees(),
             });
         };
         let first_index = observations[..sliding_index]
@@ -198,13 +208,11 @@ impl Slide {
         {
             last_index += 1;
         }
-        let points: Vec<[f64; 3]> = (first_index..=last_index)
-            .map(|i| {
-                [
-                    observations[i].seconds,
-                    smoothed_tilts[i],
-                    distance_along(&observations[i]),
-                ]
+        let points: Vec<SlidePoint> = (first_index..=last_index)
+            .map(|i| SlidePoint {
+                seconds: observations[i].seconds,
+                tilt: smoothed_tilts[i],
+                distance: distance_along(&observations[i]),
             })
             .collect();
         let sliding_friction = fit_sliding(&points)?;
@@ -310,9 +318,8 @@ fn smooth_tilts(observations: &[Observation]) -> Vec<f64> {
     observations.iter().map(tilt_at).collect()
 }
 
-/// Fits the coefficient of sliding friction to the points of a slide: each is a time in s, a tilt in rad and a
-/// displacement in mm.
-fn fit_sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
+/// Fits the coefficient of sliding friction to the points of a slide.
+fn fit_sliding(points: &[SlidePoint]) -> Result<Figure, SlideTrouble> {
     let too_few_pictures = SlideTrouble::TooFewPictures {
         pictures: points.len(),
     };
@@ -324,11 +331,11 @@ fn fit_sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
     let mut distances = vec![[0.0; 2]];
     let mut speeds = [0.0; 2];
     for pair in points.windows(2) {
-        let interval = pair[1][0] - pair[0][0];
+        let interval = pair[1].seconds - pair[0].seconds;
         let previous = distances[distances.len() - 1];
         let functions: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
         let next = [0, 1].map(|i| {
-            let mean = (functions[i](pair[0][1]) + functions[i](pair[1][1])) / 2.0;
+            let mean = (functions[i](pair[0].tilt) + functions[i](pair[1].tilt)) / 2.0;
             let speed_gain = 1000.0 * GRAVITY * mean * interval;
             let distance = previous[i] + (speeds[i] + speed_gain / 2.0) * interval;
             speeds[i] += speed_gain;
@@ -336,20 +343,19 @@ fn fit_sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
         });
         distances.push(next);
     }
-    let begin = points[0][0];
+    let first_seconds = points[0].seconds;
     let model = |parameters: &[f64]| -> Vec<f64> {
         let residual_of =
-            |([seconds, _, measured], [frictionless_distance, friction_distance]): (
-                &[f64; 3],
-                &[f64; 2],
-            )| {
-                parameters[0] + parameters[1] * 100.0 * (seconds - begin) + frictionless_distance
+            |(point, [frictionless_distance, friction_distance]): (&SlidePoint, &[f64; 2])| {
+                parameters[0]
+                    + parameters[1] * 100.0 * (point.seconds - first_seconds)
+                    + frictionless_distance
                     - parameters[2] * friction_distance
-                    - measured
+                    - point.distance
             };
         points.iter().zip(&distances).map(residual_of).collect()
     };
-    let fit = least_squares::fit(&[points[0][2], 0.0, points[0][1].tan()], model)
+    let fit = least_squares::fit(&[points[0].distance, 0.0, points[0].tilt.tan()], model)
         .ok_or(too_few_pictures)?;
     let degrees_of_freedom = points.len() - 3;
     let variance = fit.sum_of_squares / degrees_of_freedom as f64 * fit.covariance[(2, 2)];
@@ -361,10 +367,14 @@ fn fit_sliding(points: &[[f64; 3]]) -> Result<Figure, SlideTrouble> {
 
 /// Extrapolates the time at which a slide begins, s, backward from the first picture that shows a movement, and returns
 /// it with its standard error, s. `previous_seconds` is the time of the picture before that one.
-fn extrapolate_begin(points: &[[f64; 3]], friction: f64, previous_seconds: f64) -> (f64, f64) {
-    let [seconds, tilt, displacement] = points[0];
+fn extrapolate_begin(points: &[SlidePoint], friction: f64, previous_seconds: f64) -> (f64, f64) {
+    let SlidePoint {
+        seconds,
+        tilt,
+        distance,
+    } = points[0];
     let acceleration = 1000.0 * GRAVITY * (tilt.sin() - friction * tilt.cos());
-    let elapsed_seconds = (2.0 * displacement / acceleration.max(1.0)).sqrt();
+    let elapsed_seconds = (2.0 * distance / acceleration.max(1.0)).sqrt();
     let gap = seconds - previous_seconds;
     let begin = (seconds - elapsed_seconds).max(previous_seconds - gap - 1.0);
     // If the acceleration grows from zero, the slide began earlier, so half of `elapsed_seconds` counts as error.

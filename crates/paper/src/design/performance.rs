@@ -62,7 +62,8 @@ impl Conditioning {
         let spoke_count = 4 * ring_count;
         let mut sum = 0.0;
         let mut count_above = 0;
-        let (mut min_index, mut best_sample) = (f64::INFINITY, (0.0_f64, circle.centre));
+        let mut min_index = f64::INFINITY;
+        let (mut max_index, mut max_point) = (0.0_f64, circle.centre);
         for spoke in 0..spoke_count {
             let direction = Vector::direction((spoke as f64 + 0.5) * 360.0 / spoke_count as f64);
             for ring in 0..ring_count {
@@ -72,8 +73,8 @@ impl Conditioning {
                 sum += index;
                 count_above += usize::from(index > CLAIMED_LCI);
                 min_index = min_index.min(index);
-                if index > best_sample.0 {
-                    best_sample = (index, point);
+                if index > max_index {
+                    (max_index, max_point) = (index, point);
                 }
             }
         }
@@ -96,7 +97,7 @@ impl Conditioning {
             most: largest_index_near(
                 five_bar,
                 circle,
-                best_sample,
+                (max_index, max_point),
                 circle.radius / ring_count as f64,
             ),
             share_above: count_above as f64 / sample_count,
