@@ -15,7 +15,7 @@ use lizard_host_tests::{robot, scaled_count};
 #[path = "firmware/random_lines.rs"]
 mod random_lines;
 
-/// Number of random bytes, and also of lines. One EEPROM content is tested for each thousand of them.
+/// Number of random inputs of a test: bytes or lines. The test of EEPROM contents takes one for each thousand of them.
 const INPUT_COUNT: u64 = 2_000_000;
 
 /// Number of threads of a test.
@@ -89,7 +89,7 @@ fn millions_of_lines_that_are_nearly_valid_do_no_harm_to_the_core() {
 fn thousands_of_memories_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
         for _ in 0..count / 1_000 {
-            // Changes one byte, three bytes or most bytes.
+            // Changes up to one byte, three bytes or most bytes.
             let change_count = [1, 3, 3 * CONTENT_BYTES][rng.usize(..3)];
             let mut input = [0; 3 * CONTENT_BYTES + 12];
             for _ in 0..change_count {

@@ -1,7 +1,7 @@
 //! Tests that the program `lizard` contains the firmware code that the source builds.
 //!
 //! The program contains `firmware/code.hex`, for users without a compiler. If the source changes and this file does
-//! not, a board does not behave as the source says.
+//! not, boards that these users flash do not behave as the source says.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -74,7 +74,8 @@ fn record_minute(image: Image) -> Recording {
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
     let pins = servo_pins(robot());
-    let recording = play(&mut uno, pins, &script, |_| Ok(())).expect("nothing is written");
+    let recording =
+        play(&mut uno, pins, &script, |_| Ok(())).expect("the event handler never fails");
     assert_eq!(recording.state, State::Alive);
     recording
 }
@@ -85,10 +86,10 @@ fn the_program_contains_the_code_that_the_source_builds() {
     let mut built_image = FirmwareBench::image();
     built_image
         .replace(u32::from(START_ADDRESS)..0x7e00, &[])
-        .expect("the robot is removed");
+        .expect("the robot can be removed");
     let built_code = code_bytes(&built_image);
     let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
-    let recorded_versions = recorded_versions.expect("firmware/tools.txt");
+    let recorded_versions = recorded_versions.expect("firmware/tools.txt is readable");
     if recorded_versions == installed_tool_versions() {
         let first_difference =
             (0..START_ADDRESS.into()).find(|&index| embedded_code[index] != built_code[index]);
@@ -138,7 +139,7 @@ fn the_program_contains_the_code_that_the_source_builds() {
 #[test]
 fn the_code_in_the_program_has_no_robot_and_walks_with_a_robot_added() {
     let recording = record_minute(embedded_image());
-    let banner = recording.banner.expect("a banner");
+    let banner = recording.banner.expect("the firmware prints its banner");
     let robot_label = lizard_host::firmware::robot_label(robot().firmware());
     assert!(
         banner.contains(&format!(" robot {robot_label}")),

@@ -1,5 +1,5 @@
 //! Tests of the shell that runs programs for the flash tests. The shell passes input on, collects the output, and ends
-//! the program at Ctrl-C.
+//! the program on Ctrl-C.
 
 mod shell;
 

@@ -1,4 +1,4 @@
-//! Tests of the documentation. Its pages may name only tests, code items, links and files that exist.
+//! Tests of the documentation: its pages name only tests, code items, links and files that exist.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,11 +10,33 @@ use lizard_core::numbers::gaits::{Gait, Wave};
 use lizard_core::numbers::section::{Header, Numbers, SPACE_BYTES, START_ADDRESS};
 use lizard_host_tests::root;
 
+/// Reads a file, given by its path from the root of the repository.
+fn read_file(path: impl AsRef<Path>) -> String {
+    let path = root().join(path);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Returns the paths of the files and folders in a folder, given by its path from the root of the repository.
+fn paths_in(folder: impl AsRef<Path>) -> impl Iterator<Item = PathBuf> {
+    let entries = fs::read_dir(root().join(folder)).expect("the folder is readable");
+    entries.map(|entry| entry.expect("the folder entry is readable").path())
+}
+
+/// Returns the text between the first `start` and the next `end`.
+fn text_between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
+    let (_, rest) = text
+        .split_once(start)
+        .unwrap_or_else(|| panic!("no {start:?}"));
+    let (between, _) = rest
+        .split_once(end)
+        .unwrap_or_else(|| panic!("no {end:?} after {start:?}"));
+    between
+}
+
 #[test]
 fn every_fault_in_the_documentation_names_an_existing_test() {
-    let page = fs::read_to_string(root().join("docs/faults.md")).expect("the page");
-    let (_, table) = page.split_once("## Each of them").expect("the table");
-    let (table, _) = table.split_once("\n## ").expect("the next section");
+    let page = read_file("docs/faults.md");
+    let table = text_between(&page, "## Each of them", "\n## ");
     let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
     let mut row_count = 0;
     for row in rows {
@@ -29,7 +51,7 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
         let source = folders
             .iter()
             .find_map(|folder| fs::read_to_string(folder.join(file)).ok());
-        let source = source.unwrap_or_else(|| panic!("no file {file}"));
+        let source = source.unwrap_or_else(|| panic!("there is no file {file}"));
         assert!(
             source.contains(&format!("#[test]\nfn {test_name}()")),
             "{file} has no {test_name}"
@@ -39,8 +61,8 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
     assert!(row_count > 20, "{row_count}");
 }
 
-/// Makes the table rows `| offset | bytes | field |` of a type, in the order of the given fields. The code compiles
-/// only if every field is given.
+/// Returns the table rows `| offset | bytes | field |` of a type, in the order of the given fields. The code compiles
+/// only if every field of the type is given.
 macro_rules! rows {
     ($type:ident, $start:expr, [$($field:ident),+ $(,)?]) => {{
         let _ = |$type { $($field: _),+ }: &$type| ();
@@ -61,7 +83,7 @@ fn field_size<T, F>(_: fn(&T) -> &F) -> usize {
 }
 
 #[test]
-fn the_page_of_the_firmware_has_the_offset_and_size_of_every_field_of_a_robots_section() {
+fn the_firmware_page_states_the_offset_and_size_of_every_field_of_a_robots_section() {
     let header_rows = rows!(
         Header,
         0,
@@ -100,7 +122,7 @@ fn the_page_of_the_firmware_has_the_offset_and_size_of_every_field_of_a_robots_s
         format!("{:#x}", START_ADDRESS + SPACE_BYTES),
         format!("{SPACE_BYTES} bytes"),
     ];
-    let page = fs::read_to_string(root().join("docs/firmware.md")).expect("the page");
+    let page = read_file("docs/firmware.md");
     let missing_texts: Vec<String> = [
         &header_rows[..],
         &number_rows[..],
@@ -125,21 +147,20 @@ fn words_of(text: &str) -> BTreeSet<&str> {
 }
 
 #[test]
-fn the_license_says_of_every_crate_whether_it_contains_libsimavr() {
-    let license = fs::read_to_string(root().join("LICENSE")).expect("the file");
-    let (_, text) = license.split_once("therefore licensed").expect("libsimavr");
-    let (text_about_simavr_users, text_about_others) =
-        text.split_once("The firmware").expect("both lists");
+fn the_license_lists_every_crate_by_its_use_of_libsimavr() {
+    let license = read_file("LICENSE");
+    let (_, text) = license
+        .split_once("therefore licensed")
+        .expect("LICENSE names the users of libsimavr");
+    let (text_about_simavr_users, text_about_others) = text
+        .split_once("The firmware")
+        .expect("LICENSE has both lists");
     let (simavr_users, others) = (
         words_of(text_about_simavr_users),
         words_of(text_about_others),
     );
-    let workspace_manifest =
-        fs::read_to_string(root().join("crates/Cargo.toml")).expect("the workspace");
-    let (_, members) = workspace_manifest
-        .split_once("members = [")
-        .expect("the members");
-    let (members, _) = members.split_once(']').expect("the end of the members");
+    let workspace_manifest = read_file("crates/Cargo.toml");
+    let members = text_between(&workspace_manifest, "members = [", "]");
     let member_folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
     assert!(member_folders.len() > 9, "{member_folders:?}");
     for member_folder in member_folders {
@@ -147,8 +168,7 @@ fn the_license_says_of_every_crate_whether_it_contains_libsimavr() {
             Some(name) => name.to_owned(),
             None => format!("crates/{member_folder}"),
         };
-        let manifest =
-            fs::read_to_string(root().join(&crate_folder).join("Cargo.toml")).expect(&crate_folder);
+        let manifest = read_file(format!("{crate_folder}/Cargo.toml"));
         let uses_simavr =
             crate_folder == "crates/simulated-uno" || manifest.contains("\nsimulated-uno = ");
         let crate_path = &*format!("{crate_folder}/");
@@ -167,10 +187,9 @@ fn the_license_says_of_every_crate_whether_it_contains_libsimavr() {
 #[test]
 fn every_code_item_that_a_page_names_by_its_path_exists() {
     let mut item_count = 0;
-    let pages = fs::read_dir(root().join("docs")).expect("docs/");
-    let pages = pages.map(|page| page.expect("a page").path());
+    let pages = paths_in("docs");
     for page in pages.filter(|page| page.extension().is_some_and(|extension| extension == "md")) {
-        let text = fs::read_to_string(&page).expect("a page");
+        let text = read_file(&page);
         for path in text.split('`').filter(|code| code.starts_with("lizard_")) {
             let Some((crate_name, item)) = path
                 .strip_prefix("lizard_")
@@ -188,17 +207,15 @@ fn every_code_item_that_a_page_names_by_its_path_exists() {
             item_count += 1;
         }
     }
-    assert!(item_count > 0, "no page names an item");
+    assert!(item_count > 0, "no page names a code item");
 }
 
 /// Returns the text of all Rust files in a folder and its subfolders.
 fn read_sources(folder: &Path) -> String {
-    let entries = fs::read_dir(folder).expect("a folder of sources");
-    let paths = entries.map(|entry| entry.expect("an entry").path());
-    paths
+    paths_in(folder)
         .map(|path| match path.is_dir() {
             true => read_sources(&path),
-            false => fs::read_to_string(path).expect("a file"),
+            false => read_file(path),
         })
         .collect()
 }
@@ -207,29 +224,26 @@ fn read_sources(folder: &Path) -> String {
 /// with its subfolders.
 fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     if path.is_dir() {
-        let entries = fs::read_dir(path).expect("a folder");
-        let paths = entries.map(|entry| entry.expect("an entry").path());
-        return paths
+        return paths_in(path)
             .flat_map(|path| files_with_word(&path, word))
             .collect();
     }
-    let text = fs::read_to_string(path).expect("a text");
+    let text = read_file(path);
     let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
     let has_word = words.any(|candidate| candidate.eq_ignore_ascii_case(word));
-    let path = path.strip_prefix(root()).expect("below the root");
+    let path = path
+        .strip_prefix(root())
+        .expect("the path is below the root");
     has_word.then(|| path.to_path_buf()).into_iter().collect()
 }
 
 /// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain the command
-/// `center`. This word occurs only as the command, while `deadman` also occurs in sentences. No message names `center`,
-/// so text.rs is searched for `deadman` instead.
+/// `center`. This word occurs only as the command, while other commands, such as `deadman`, also occur in sentences. No
+/// message names `center`, so text.rs is searched for `deadman` instead.
 #[test]
 fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
-    let page = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("CONTRIBUTING.md");
-    let (_, list) = page
-        .split_once("**A console command.**")
-        .expect("the list of files");
-    let (list, _) = list.split_once("**A gait.**").expect("the next list");
+    let page = read_file("CONTRIBUTING.md");
+    let list = text_between(&page, "**A console command.**", "**A gait.**");
     let quoted = list.split('`').skip(1).step_by(2);
     let files = quoted.filter(|text| text.contains('/') && !text.contains(' '));
     let listed_files: BTreeSet<PathBuf> = files.map(PathBuf::from).collect();
@@ -256,11 +270,10 @@ fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
 /// Returns the paths and texts of README.md, CONTRIBUTING.md and the pages in docs/.
 fn read_pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
-    let docs = fs::read_dir(root().join("docs")).expect("docs/");
-    paths.extend(docs.map(|page| page.expect("a page").path()));
+    paths.extend(paths_in("docs"));
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
     let read_page = |path: PathBuf| {
-        let text = fs::read_to_string(&path).expect("a page");
+        let text = read_file(&path);
         (path, text)
     };
     paths.into_iter().map(read_page).collect()
@@ -303,12 +316,11 @@ fn every_link_of_a_page_has_an_existing_target() {
             let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
             let target = match file {
                 "" => page.clone(),
-                file => page.parent().expect("a folder").join(file),
+                file => page.parent().expect("the page is in a folder").join(file),
             };
             assert!(target.exists(), "{}: {link}", page.display());
             if !anchor.is_empty() {
-                let target_text = fs::read_to_string(&target).expect("a page");
-                let has_anchor = anchors_of(&target_text)
+                let has_anchor = anchors_of(&read_file(&target))
                     .iter()
                     .any(|candidate| candidate == anchor);
                 assert!(has_anchor, "{}: {link}", page.display());
@@ -321,14 +333,14 @@ fn every_link_of_a_page_has_an_existing_target() {
 
 #[test]
 fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
-    let book = fs::read_to_string(root().join("mkdocs.yml")).expect("the book's contents");
+    let book = read_file("mkdocs.yml");
     let count_of = |name: &str| book.matches(name).count();
     for (page, _) in read_pages() {
         let name = page
             .file_name()
-            .expect("a name")
+            .expect("the page has a file name")
             .to_str()
-            .expect("a UTF-8 name");
+            .expect("the file name is UTF-8");
         if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
             assert_eq!(
                 count_of(&format!("{name},"))
@@ -339,7 +351,7 @@ fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
             );
         }
     }
-    let readme = fs::read_to_string(root().join("README.md")).expect("the page");
+    let readme = read_file("README.md");
     assert!(
         readme.lines().count() <= 150,
         "{} lines",
@@ -351,7 +363,7 @@ fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
 fn no_picture_is_on_two_pages_of_the_book() {
     let mut pictures = BTreeSet::new();
     for (page, text) in read_pages() {
-        let folder = page.parent().expect("a folder");
+        let folder = page.parent().expect("the page is in a folder");
         // README.md is not a page of the book.
         if !folder.ends_with("docs") {
             continue;
@@ -375,16 +387,16 @@ fn no_picture_is_on_two_pages_of_the_book() {
 
 #[test]
 fn the_pages_name_the_current_version() {
-    let manifest = fs::read_to_string(root().join("Cargo.toml")).expect("Cargo.toml");
+    let manifest = read_file("Cargo.toml");
     let version = manifest
         .lines()
         .find_map(|line| line.strip_prefix("version = "))
-        .expect("a version")
+        .expect("Cargo.toml has a version")
         .trim_matches('"');
-    let changelog = fs::read_to_string(root().join("CHANGELOG.md")).expect("CHANGELOG.md");
+    let changelog = read_file("CHANGELOG.md");
     assert!(
         changelog.contains(&format!("\n## {version} (")),
-        "CHANGELOG.md"
+        "CHANGELOG.md has no section for {version}"
     );
     let mut version_count = 0;
     for (page, text) in read_pages() {

@@ -135,13 +135,16 @@ fn a_byte_that_changes_after_it_was_written_ends_the_upload() {
     assert!(has_flipped_bit, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: it did not work"), "{screen}");
-    assert!(!screen.contains("# lizard"), "no console:\n{screen}");
+    assert!(
+        !screen.contains("# lizard"),
+        "the console has started:\n{screen}"
+    );
 }
 
 #[test]
 fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let mut desk = Desk::with_new_uno();
-    // Replaces the boot loader by an endless loop: `rjmp .-2`.
+    // Replaces the boot loader with an endless loop: `rjmp .-2`.
     desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = start_make_flash(&desk);
     let screen = desk.run_until_exit(&shell);

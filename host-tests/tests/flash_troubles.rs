@@ -1,4 +1,4 @@
-//! Tests of the error messages of `make flash`. The tests need no board, and do not use a connected board.
+//! Tests of the error messages of `make flash`. The tests need no board and ignore one that is connected.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -11,7 +11,7 @@ use simulated_uno::Port;
 use tempfile::TempDir;
 
 /// Runs `scripts/flash --check` on the serial ports in a folder. Returns the script's error output, and true if the
-/// script succeeds. `user_command` runs the script as another user; if it is empty, the current user runs the script.
+/// script succeeds. `user_command` runs the script as another user; if empty, the current user runs the script.
 /// `port` is the value of RAVEDUDE_PORT.
 fn check_ports_as(
     user_command: &[&str],
@@ -30,8 +30,8 @@ fn check_ports_as(
         command.env("RAVEDUDE_PORT", port);
     }
     let output = LIMIT.output(&mut command, b"").expect("the script ends");
-    let output_text = String::from_utf8_lossy(&output.stderr).into_owned();
-    (output_text, output.status.success())
+    let error_output = String::from_utf8_lossy(&output.stderr).into_owned();
+    (error_output, output.status.success())
 }
 
 fn check_ports(port_folder: &Path) -> (String, bool) {
@@ -45,13 +45,13 @@ fn is_root() -> bool {
 
 /// Creates a folder that every user may read.
 fn create_folder() -> TempDir {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let permissions = Permissions::from_mode(0o755);
     fs::set_permissions(folder.path(), permissions).expect("the test owns the folder");
     folder
 }
 
-/// Copies the scripts into a folder that other users can also read.
+/// Copies the scripts into a folder that every user may read.
 fn copy_scripts() -> TempDir {
     let copy = create_folder();
     let mut command = Command::new("cp");
@@ -60,25 +60,25 @@ fn copy_scripts() -> TempDir {
         .arg(root().join("scripts"))
         .arg(copy.path());
     let output = LIMIT.output(&mut command, b"").expect("cp ends");
-    assert!(output.status.success(), "the scripts are copied");
+    assert!(output.status.success(), "cp fails");
     copy
 }
 
 #[test]
 fn without_a_board_the_message_says_what_to_connect() {
-    let (output_text, has_succeeded) = check_ports(create_folder().path());
+    let (error_output, has_succeeded) = check_ports(create_folder().path());
     assert!(!has_succeeded);
-    assert!(output_text.contains("no board found"), "{output_text}");
+    assert!(error_output.contains("no board found"), "{error_output}");
     assert!(
-        output_text.contains("cable that carries data"),
-        "{output_text}"
+        error_output.contains("cable that carries data"),
+        "{error_output}"
     );
 }
 
 #[test]
-fn the_only_board_is_used_with_any_usb_chip() {
+fn a_single_board_is_used_whatever_its_usb_chip() {
     let port_folder = create_folder();
-    File::create(port_folder.path().join("ttyUSB0")).expect("a file");
+    File::create(port_folder.path().join("ttyUSB0")).expect("the file can be created");
     assert_eq!(check_ports(port_folder.path()), (String::new(), true));
 }
 
@@ -86,17 +86,17 @@ fn the_only_board_is_used_with_any_usb_chip() {
 fn with_several_boards_the_user_must_name_a_port() {
     let port_folder = create_folder();
     for name in ["ttyACM0", "ttyUSB3"] {
-        File::create(port_folder.path().join(name)).expect("a file");
+        File::create(port_folder.path().join(name)).expect("the file can be created");
     }
-    let (output_text, has_succeeded) = check_ports(port_folder.path());
+    let (error_output, has_succeeded) = check_ports(port_folder.path());
     assert!(!has_succeeded);
     assert!(
-        output_text.contains("several boards found"),
-        "{output_text}"
+        error_output.contains("several boards found"),
+        "{error_output}"
     );
     assert!(
-        output_text.contains("make flash RAVEDUDE_PORT="),
-        "{output_text}"
+        error_output.contains("make flash RAVEDUDE_PORT="),
+        "{error_output}"
     );
     let named_port = port_folder.path().join("ttyUSB3");
     assert!(check_ports_as(&[], port_folder.path(), Some(&named_port)).1);
@@ -105,33 +105,33 @@ fn with_several_boards_the_user_must_name_a_port() {
 #[test]
 fn a_missing_port_is_named_in_the_message() {
     let missing_port = Path::new("/dev/no-such-port");
-    let (output_text, has_succeeded) =
+    let (error_output, has_succeeded) =
         check_ports_as(&[], create_folder().path(), Some(missing_port));
     assert!(!has_succeeded);
     assert!(
-        output_text.contains("there is no /dev/no-such-port"),
-        "{output_text}"
+        error_output.contains("there is no /dev/no-such-port"),
+        "{error_output}"
     );
     assert!(
-        output_text.contains("of this machine: none"),
-        "{output_text}"
+        error_output.contains("of this machine: none"),
+        "{error_output}"
     );
 }
 
 #[test]
 fn the_message_names_the_program_that_has_the_port_open() {
-    let port = Port::new().expect("a pseudo terminal");
+    let port = Port::new().expect("a pseudo terminal can be opened");
     let port_folder = create_folder();
-    symlink(port.path(), port_folder.path().join("ttyACM0")).expect("a link");
+    symlink(port.path(), port_folder.path().join("ttyACM0")).expect("the link can be created");
     assert_eq!(check_ports(port_folder.path()), (String::new(), true));
     let mut options = OpenOptions::new();
     let open_port = options.read(true).write(true).open(port.path());
-    let (output_text, has_succeeded) = check_ports(port_folder.path());
+    let (error_output, has_succeeded) = check_ports(port_folder.path());
     assert!(!has_succeeded);
     let own_process = format!("(process {})", std::process::id());
     assert!(
-        output_text.contains("is open in ") && output_text.contains(&own_process),
-        "{output_text}"
+        error_output.contains("is open in ") && error_output.contains(&own_process),
+        "{error_output}"
     );
     drop(open_port);
     assert!(check_ports(port_folder.path()).1);
@@ -141,15 +141,15 @@ fn the_message_names_the_program_that_has_the_port_open() {
 fn without_permission_the_message_says_which_group_to_join() {
     let port_folder = create_folder();
     let port = port_folder.path().join("ttyACM0");
-    File::create(&port).expect("a file");
+    File::create(&port).expect("the file can be created");
     fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("the test owns the file");
     let nobody_command = ["setpriv", "--reuid=nobody", "--clear-groups"];
     if !is_root() {
         // Only root can run the script as another user. A port that even its owner may not open has the same effect.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
-        let (output_text, has_succeeded) = check_ports_as(&[], port_folder.path(), None);
+        let (error_output, has_succeeded) = check_ports_as(&[], port_folder.path(), None);
         assert!(!has_succeeded);
-        assert!(output_text.contains("may not open"), "{output_text}");
+        assert!(error_output.contains("may not open"), "{error_output}");
         return;
     }
     let mut chgrp = Command::new("chgrp");
@@ -157,14 +157,17 @@ fn without_permission_the_message_says_which_group_to_join() {
     let chgrp_output = LIMIT.output(&mut chgrp, b"").expect("chgrp ends");
     assert!(
         chgrp_output.status.success(),
-        "the group dialout is Debian's"
+        "the group dialout does not exist"
     );
-    let (output_text, has_succeeded) = check_ports_as(&nobody_command, port_folder.path(), None);
+    let (error_output, has_succeeded) = check_ports_as(&nobody_command, port_folder.path(), None);
     assert!(!has_succeeded);
-    assert!(output_text.contains("nobody may not open"), "{output_text}");
     assert!(
-        output_text.contains("usermod -aG dialout nobody"),
-        "{output_text}"
+        error_output.contains("nobody may not open"),
+        "{error_output}"
+    );
+    assert!(
+        error_output.contains("usermod -aG dialout nobody"),
+        "{error_output}"
     );
 }
 
@@ -175,7 +178,7 @@ fn without_avrdude_the_message_says_what_to_install() {
     let bin_folder = create_folder();
     for tool in ["bash", "env", "id", "dirname", "grep", "apt-get"] {
         let tool_path = Path::new("/usr/bin").join(tool);
-        symlink(tool_path, bin_folder.path().join(tool)).expect("a link");
+        symlink(tool_path, bin_folder.path().join(tool)).expect("the link can be created");
     }
     let dpkg_query = bin_folder.path().join("dpkg-query");
     // A new file, not a link: writing through a link would change the machine's own program.

@@ -24,13 +24,13 @@ fn gait_commands() -> Vec<String> {
     robot().gaits().iter().map(CheckedGait::command).collect()
 }
 
-/// The allowed difference in time between the outputs of two consoles.
+/// The allowed difference in time between the bytes of two consoles.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum TimeTolerance {
-    /// Two cycles. Two interrupts may delay main before a byte, and each may come one cycle later in one simulator than
-    /// in the other.
+    /// Two cycles. Two interrupts may delay the main loop before a byte, and each may come one cycle later in one
+    /// simulator than in the other.
     Cycles,
-    /// One iteration of main's loop, which checks only once per iteration whether the EEPROM is ready and whether a
+    /// One iteration of the main loop, which checks only once per iteration whether the EEPROM is ready and whether a
     /// byte of a flood has arrived.
     LoopIteration,
     /// No limit: the consoles are not compared. While long answers are sent, some bytes of a flood are lost, and a
@@ -38,9 +38,9 @@ enum TimeTolerance {
     Any,
 }
 
-/// The upper bound of the cycles of one iteration of main's loop. An iteration computes a frame, in at most
+/// Upper bound of the cycles of one iteration of the main loop. An iteration computes a frame, in at most
 /// 12 000 cycles, and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator
-/// and just after the start of this iteration in the other, main notices this one iteration later in the other.
+/// and just after its start in the other, the main loop notices this one iteration later in the other simulator.
 const MAX_LOOP_CYCLES: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and checks that pulses, console and EEPROM agree.
@@ -60,7 +60,7 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
         pulse_agreement.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
     assert_eq!(
         pulse_agreement.offset_cycles, AVR8JS_LAG_CYCLES,
-        "{case_name}: the pulses' cycle in the slot"
+        "{case_name}: the delay of the pulses"
     );
     let max_jitter_cycles = match tolerance {
         TimeTolerance::Cycles => Some(2),
@@ -124,7 +124,7 @@ fn two_simulators_agree_about_saved_settings() {
         .count();
     assert!(
         written_count > 100,
-        "both calibrations and a pose are kept: {written_count} bytes"
+        "only {written_count} bytes of two calibrations and a pose are written"
     );
     check_agreement(
         &mut bench,

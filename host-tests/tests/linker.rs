@@ -27,13 +27,13 @@ fn run_to_end(image: &Image) -> Uno {
     assert_eq!(
         uno.peek(ram_address(image, "done")),
         1,
-        "the program ends, and a timer has interrupted it"
+        "the program has not ended, or the timer has interrupted it too rarely"
     );
     uno
 }
 
-/// Returns a C program with twenty functions of 600 bytes, interrupted by a timer. Function `i` of the first ten calls
-/// function `i + 10`. `extra_code` is added in front of `main`.
+/// Returns a C program that a timer interrupts, with twenty functions of 600 bytes. Each function `i` of the first ten
+/// calls function `i + 10`. `extra_code` is inserted before `main`.
 fn program_with_far_calls(extra_code: &str) -> String {
     let functions: String = (0..20)
         .rev()
@@ -71,7 +71,7 @@ fn program_with_far_calls(extra_code: &str) -> String {
     )
 }
 
-/// Returns the correct result of the program of [`program_with_far_calls`].
+/// Returns the correct result of the program that [`program_with_far_calls`] returns.
 fn expected_sum() -> u16 {
     fn f(index: u16, a: u16) -> u16 {
         let a = a.wrapping_mul(33).wrapping_add(index);
@@ -96,7 +96,8 @@ fn functions_in_another_order_compute_the_same_result_in_fewer_bytes() {
         link_plain_and_shrunk(&program_with_far_calls(""));
     assert_eq!(run_for_result(&plain_image), expected_sum());
     assert_eq!(run_for_result(&shrunk_image), expected_sum());
-    // Main cannot be near all ten functions that it calls, but each of the ten can be near the function that it calls.
+    // `main` cannot be near all ten functions that it calls, but each of the ten can be near the function that it
+    // calls.
     assert!(savings.calls >= 20, "{savings:?}");
     let end_address = |image: &Image| image.symbol("_etext").expect("the symbol exists").address;
     let saved_bytes = end_address(&plain_image) as i64 - end_address(&shrunk_image) as i64;

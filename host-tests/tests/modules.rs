@@ -34,17 +34,17 @@ const CRATES: [&str; 23] = [
 ];
 
 /// The layers of the core, which are its top-level modules, from top to bottom. A layer may use the layers below it.
-/// docs/structure.md calls them rooms.
+/// docs/structure.md describes them.
 const CORE_LAYERS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
-/// Folders whose `mod.rs` counts as a separate module, which must not be part of a cycle either. Each folder is a crate
-/// and a path prefix.
+/// Folders whose `mod.rs` counts as a separate module, which must not be part of a cycle either. Each folder is given
+/// by its crate and its path prefix.
 const FOLDERS_WITH_ROOT_FILE: [(&str, &str); 2] = [
     ("crates/host", "crate::"),
     ("crates/host", "crate::commands::"),
 ];
 
-/// For each module of a folder, the other modules of the folder that it uses.
+/// The other modules of its folder that each module uses, by the module's name.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
@@ -65,7 +65,7 @@ fn no_modules_use_each_other_in_a_cycle() {
     }
     assert!(
         use_count > 200,
-        "only {use_count} uses of another module were read"
+        "only {use_count} uses of another module were found"
     );
 }
 
@@ -103,7 +103,7 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
 }
 
 #[test]
-fn super_is_read_as_the_path_of_the_module_above_and_the_items_of_a_root_file_are_found() {
+fn super_is_resolved_to_the_path_of_the_parent_module_and_the_items_of_a_root_file_are_found() {
     let text = "use super::{Link, status};\nuse super::super::recorder::Event;";
     assert_eq!(
         resolve_super(text, "crate::drive::console::"),
@@ -210,8 +210,11 @@ impl Folder {
             for path in source_files(&module_folder) {
                 let relative_path = path
                     .strip_prefix(&self.directory)
-                    .expect("a path in the folder");
-                let parents = relative_path.parent().expect("a folder").iter();
+                    .expect("the path is in the folder");
+                let parents = relative_path
+                    .parent()
+                    .expect("the file is in a folder")
+                    .iter();
                 let parents = parents.map(|name| name.to_string_lossy());
                 let parents: Vec<_> = std::iter::once((*module).into()).chain(parents).collect();
                 // `mod.rs` is the module of its folder.
@@ -254,8 +257,8 @@ fn item_names(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Replaces every `super::` in the text of a file by the path of the module that it means. `parent_path` is the path of
-/// the module above the file.
+/// Replaces every `super::` in the text of a file with the path of the module that it refers to. `parent_path` is the
+/// path of the file's parent module.
 fn resolve_super(text: &str, parent_path: &str) -> String {
     let mut text = text.to_owned();
     let parts: Vec<&str> = parent_path.split_inclusive("::").collect();
@@ -313,7 +316,7 @@ fn source_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };
-    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let paths = entries.map(|entry| entry.expect("the folder entry is readable").path());
     let sources = paths.filter(|path| path.file_stem().is_some_and(|name| name != "tests"));
     sources
         .flat_map(|path| match path.is_dir() {

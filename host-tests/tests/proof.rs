@@ -8,18 +8,19 @@ use lizard_host_tests::seed;
 use lizard_proof::{PairSample, Proof};
 use lizard_robot::Robot;
 
-/// The comparison checks one in this many pairs of servo positions.
+/// Sampling ratio: one in this many pairs of servo positions is checked.
 const SAMPLE_ONE_IN: u32 = 256;
 
-/// Returns the file of the firmware's robot, by default robot.toml, and every file of robots/.
+/// Returns the paths of the firmware's robot, by default robot.toml, and of every file in robots/.
 fn robot_files() -> Vec<PathBuf> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let firmware_robot = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
     let firmware_robot =
         firmware_robot.map_or_else(|| format!("{root}/robot.toml").into(), PathBuf::from);
-    let robots = std::fs::read_dir(format!("{root}/robots")).expect("the folder robots");
+    let robots =
+        std::fs::read_dir(format!("{root}/robots")).expect("the folder robots/ is readable");
     let mut paths: Vec<PathBuf> = robots
-        .map(|entry| entry.expect("a file").path())
+        .map(|entry| entry.expect("the folder entry is readable").path())
         .filter(|path| {
             path.extension()
                 .is_some_and(|extension| extension == "toml")
@@ -31,7 +32,7 @@ fn robot_files() -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_judged_wrongly() {
+fn the_guard_judges_every_pair_of_positions_outside_the_band_or_in_a_cell_correctly() {
     for (number, file) in (0..).zip(robot_files()) {
         // Each robot and each seed gets a different sample of the pairs.
         let sample = PairSample {
@@ -65,10 +66,10 @@ fn no_pair_of_positions_outside_the_band_or_in_a_cell_is_judged_wrongly() {
 }
 
 #[test]
-fn a_guard_with_another_robots_lengths_does_not_pass() {
+fn a_guard_with_another_robots_lengths_fails_the_proof() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml"));
-    let text = text.expect("robots/paper.toml");
+    let text = text.expect("robots/paper.toml is readable");
     // Removes `look`, which is unsafe with the longer couplers, and all gaits after it.
     let text = text.split("[gait.look]").next().unwrap_or_default();
     let robot = Robot::parse(text).expect("the paper's robot is valid");
@@ -86,7 +87,7 @@ fn a_guard_with_another_robots_lengths_does_not_pass() {
         0
     );
     let proof = Proof::of(&robot, longer_robot.firmware(), sample, &|_| {});
-    // The two ends, the two sides, and the legs, whose margins do not depend on lengths.
+    // The findings are those of the two ends, the two sides, and the legs, whose margins do not depend on lengths.
     let has_longer_bars = [true, false, true, true].into_iter().chain(repeat(false));
     for (finding, has_longer_bars) in proof.findings.iter().zip(has_longer_bars) {
         assert_eq!(

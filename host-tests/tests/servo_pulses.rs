@@ -2,7 +2,7 @@
 //! eight servos during a flood of serial bytes.
 
 use lizard_host_tests::{FirmwareBench, root};
-use servo_pulses::{MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles};
+use servo_pulses::{CYCLES_PER_US, MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 
 /// The pins of the example's servos, in the order of the example.
@@ -11,12 +11,12 @@ const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 /// Returns the width of a servo's pulse in a frame, cycles, according to the example's description: the width rises
 /// from 1000 us to 2000 us and falls again, by a constant step per frame, which is different for each servo.
 fn expected_width(servo: u64, frame: u64) -> u64 {
-    // The example counts the position in 16 bits.
+    // The example stores the position in 16 bits.
     let position = frame * (16 * servo + 5) % 65_536 % 32_000;
     32_000 - 16_000u64.abs_diff(position)
 }
 
-/// Loads the example.
+/// Loads the crate's example `sweep`.
 fn load_sweep_example(fidelity: Fidelity) -> Uno {
     let elf = FirmwareBench::elf().with_file_name("examples/sweep.elf");
     Uno::load(&elf, fidelity).unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"))
@@ -38,15 +38,15 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
         let frame_length_cycles = u64::from(frame_cycles(8));
         let servo_edges = edges.iter().filter(|edge| edge.pin != Pin::d(13));
         let servo_edges: Vec<_> = servo_edges.copied().collect();
-        assert_eq!(most_pins_high(&servo_edges), 1, "one servo at a time");
+        assert_eq!(most_pins_high(&servo_edges), 1, "pins high at once");
         // The first two or three frames are not among the edges.
         let first_width = uno.pulses(Pin::arduino(PINS[0]))[0].width;
         let skipped_frame_count = (0..10)
             .find(|frame| expected_width(0, *frame) == first_width)
-            .expect("one of the first ten frames");
+            .expect("the first recorded frame is one of the first ten");
         for (servo, pin) in PINS.into_iter().enumerate() {
             let pulses = uno.pulses(Pin::arduino(pin));
-            assert!(pulses.len() > 880, "{} of {pin}", pulses.len());
+            assert!(pulses.len() > 880, "{} pulses of pin {pin}", pulses.len());
             for (frame, pulse) in pulses.iter().enumerate() {
                 let expected = expected_width(servo as u64, skipped_frame_count + frame as u64);
                 assert_eq!(
@@ -64,8 +64,8 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
             }
         }
         let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
-        // The serial line was full in both directions. Stock simavr sends more slowly than it receives, so it loses
-        // bytes. The simulation by the data sheet loses none.
+        // The serial line was saturated in both directions. Stock simavr sends more slowly than it receives, so it
+        // loses bytes. The simulation that follows the data sheet loses none.
         if fidelity == Fidelity::DataSheet {
             assert!(echo.len() > 115_000, "{} bytes", echo.len());
             let expected_echo: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
@@ -91,7 +91,7 @@ fn the_led_blinks_every_sixteen_frames() {
 }
 
 #[test]
-fn the_costs_in_the_readme_equal_those_of_the_example() {
+fn the_costs_in_the_readme_match_those_of_the_example() {
     let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(100);
     let count_interrupt_cycles = |uno: &Uno| {
@@ -113,14 +113,14 @@ fn the_costs_in_the_readme_equal_those_of_the_example() {
         let row = readme
             .lines()
             .find(|line| line.starts_with(&format!("| {name}")));
-        let row = row.unwrap_or_else(|| panic!("no row {name}"));
+        let row = row.unwrap_or_else(|| panic!("the README has no row {name}"));
         row.split('|')
             .map(|cell| cell.trim().replace(' ', ""))
             .collect()
     };
     let parse_number = |cell: &str| {
         cell.parse::<f64>()
-            .unwrap_or_else(|_| panic!("{cell} is a number"))
+            .unwrap_or_else(|_| panic!("{cell} is not a number"))
     };
     // The tolerance is 2 %, because another version of the compiler may save a few bytes.
     let assert_near = |name: &str, measured: f64| {
@@ -144,7 +144,9 @@ fn the_costs_in_the_readme_equal_those_of_the_example() {
 }
 
 #[test]
-fn the_limits_of_a_pulses_width_are_far_beyond_a_servos_travel() {
-    assert!(u32::from(MIN_WIDTH_CYCLES) <= 16 * 400);
-    assert!((1..=8).all(|servo_count| u32::from(max_width_cycles(servo_count)) >= 16 * 2_400));
+fn the_pulse_width_limits_leave_room_for_a_servos_full_travel() {
+    let cycles_of_us = |us: u32| us * u32::from(CYCLES_PER_US);
+    assert!(u32::from(MIN_WIDTH_CYCLES) <= cycles_of_us(400));
+    let allows_2400_us = |count: usize| u32::from(max_width_cycles(count)) >= cycles_of_us(2_400);
+    assert!((1..=8).all(allows_2400_us));
 }

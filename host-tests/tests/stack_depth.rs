@@ -6,7 +6,7 @@ use lizard_host_tests::avr_gcc::{assemble, compile_c};
 use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Code that sets the stack pointer from r28 and r29, as avr-libc does.
+/// Code that sets the stack pointer to the end of SRAM by way of r28 and r29, as avr-libc does.
 const SET_STACK_POINTER: &str = "
         ldi r28, 0xff $ ldi r29, 0x08
         out SPH, r29 $ out SPL, r28";

@@ -11,7 +11,8 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Uno};
 
-/// Runs every gait that moves: one second to reach the gait's first pose, then three cycles.
+/// Runs every gait that moves, for one second to reach the gait's first pose and for three cycles, and replays it on
+/// the twin.
 fn walk_all_gaits(model: ServoModel) -> Replay {
     let mut ms = 1000;
     let mut steps = Vec::new();
@@ -28,7 +29,7 @@ fn walk_all_gaits(model: ServoModel) -> Replay {
     let mut uno = Uno::with_image(FirmwareBench::image(), Fidelity::DataSheet);
     supplies::connect(&mut uno, robot());
     let recording = play(&mut uno, servo_pins(robot()), &script, |_| Ok(()));
-    let recording = recording.expect("nothing is written");
+    let recording = recording.expect("the event handler never fails");
     let spans = command_spans(&script, &recording.answers);
     Replay::of(robot(), &recording.frames, spans, model)
 }
@@ -47,7 +48,11 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
         .iter()
         .filter(|gait| gait.has_movement())
         .count();
-    assert_eq!(cycles.len(), moving_gait_count, "one cycle for each gait");
+    assert_eq!(
+        cycles.len(),
+        moving_gait_count,
+        "the report does not have one cycle for each moving gait"
+    );
     let mut compared_count = 0;
     for (row, cycle) in cycles {
         let mut compare =
@@ -71,7 +76,7 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
             "{}",
             row.command
         );
-        let (name, margin) = row.margin.expect("every pose closes");
+        let (name, margin) = row.margin.expect("the loops close at every pose");
         let limits = robot().limits();
         let smallest_limit = limits.type2.min(limits.type1).min(limits.leg);
         assert!(

@@ -196,10 +196,10 @@ fn check_alive(record: &Record) -> Result<(), String> {
 /// get constant pulses.
 fn check_stand(record: &Record) -> Result<(), String> {
     let mut exchanges = record.exchanges.iter().rev();
-    let last_status = exchanges.next().ok_or("nothing was asked")?;
+    let last_status = exchanges.next().ok_or("no line was sent")?;
     let stand_exchange = exchanges
         .find(|exchange| exchange.line == "stand")
-        .ok_or("no stand")?;
+        .ok_or("stand was not sent")?;
     if !stand_exchange.is_accepted() {
         return Err(format!("stand is answered by {:?}", stand_exchange.answer));
     }

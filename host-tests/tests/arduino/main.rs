@@ -52,7 +52,7 @@ fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
 /// Returns the difference between the longest and the shortest width.
 fn jitter(widths: &[u64]) -> u64 {
     let [min, max] = [widths.iter().min(), widths.iter().max()];
-    max.expect("a pulse") - min.expect("a pulse")
+    max.expect("there are pulses") - min.expect("there are pulses")
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
         assert!(widths.len() > 440, "{} pulses", widths.len());
         assert!(
             widths.iter().all(|actual| *actual == expected_cycles),
-            "not {expected_cycles}: {widths:?}"
+            "not all are {expected_cycles}: {widths:?}"
         );
     }
     assert_eq!(uno.overruns(), 0);
@@ -139,7 +139,7 @@ fn the_servo_library_has_jitter_in_the_same_flood() {
 }
 
 #[test]
-fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
+fn a_late_pulse_is_left_out_and_no_pulse_is_too_short() {
     let mut uno = load_sketch("Late");
     uno.run_ms(10_000);
     let pulses = uno.pulses(Pin::d(9));
@@ -153,15 +153,18 @@ fn a_late_pulse_is_left_out_and_none_is_ever_too_short() {
         // A falling edge waits until interrupts are enabled again, 30 us at most.
         assert!((24_000..24_500).contains(&pulse.width), "{}", pulse.width);
     }
-    assert!(uno.is_high(Pin::d(13)), "the sketch reports the late edges");
+    assert!(
+        uno.is_high(Pin::d(13)),
+        "the sketch has reported no late edge"
+    );
 }
 
 #[test]
-fn every_change_of_a_width_appears_whole_and_no_pulse_is_cut() {
+fn every_change_of_a_width_is_atomic_and_no_pulse_is_cut() {
     let mut uno = load_sketch("Restless");
     let widths = record_widths_in_flood(&mut uno, &[9, 14]);
     let [rewritten_widths, attached_widths] = &widths[..] else {
-        unreachable!()
+        unreachable!("two pins have two lists of widths")
     };
     for width in [0x5dff, 0x5e00] {
         let pulse_count = rewritten_widths
@@ -221,7 +224,9 @@ fn angles_and_widths_equal_those_of_the_servo_library() {
             .collect();
         assert!(!widths.is_empty());
         assert!(
-            widths.iter().all(|width| *width == width_us * 16),
+            widths
+                .iter()
+                .all(|width| *width == width_us * u64::from(CYCLES_PER_US)),
             "{written_value}: {widths:?}"
         );
         // All other servos are detached.

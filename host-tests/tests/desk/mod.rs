@@ -1,5 +1,5 @@
-//! A new board at a serial port of this machine, for tests of programs that write firmware to boards. The board is a
-//! UNO, simulated in real time at a pseudo terminal. Its flash contains the boot loader of a stock UNO or an old Nano.
+//! A new board at a serial port of this machine, for tests of programs that write firmware to boards. The board is
+//! simulated in real time at a pseudo terminal. Its flash contains the boot loader of a stock UNO or of an old Nano.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -21,7 +21,7 @@ pub fn uno_boot_loader() -> Image {
 /// Loads a boot loader that `make flash-test` has built.
 pub fn load_boot_loader(name: &str) -> Image {
     let path: PathBuf = root().join("target/flash-test").join(name);
-    Image::read(path).expect("`make flash-test` makes the boot loaders")
+    Image::read(path).expect("`make flash-test` has built the boot loader")
 }
 
 /// A simulated board at a serial port of this machine, and the edges of its pins.
@@ -39,7 +39,7 @@ impl Desk {
     pub fn with_boot_loader(boot_loader: Image) -> Self {
         Self {
             uno: Uno::with_boot_loader(boot_loader, Fidelity::DataSheet),
-            port: Port::new().expect("a pseudo terminal"),
+            port: Port::new().expect("a pseudo terminal can be opened"),
             edges: Vec::new(),
         }
     }
@@ -61,7 +61,7 @@ impl Desk {
         })
     }
 
-    /// Runs the board until `text` is on the screen. Fails if the text does not appear within the time limit.
+    /// Runs the board until `text` is on the screen. The test fails if the text does not appear within the time limit.
     pub fn wait_for_text(&mut self, shell: &Shell, text: &str) {
         let is_in_time = self.run_until(|_| shell.screen().contains(text) || shell.has_ended());
         let screen = if shell.has_ended() {

@@ -89,9 +89,9 @@ fn assert_eeprom_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
     );
 }
 
-/// Unplugs the board. The next program connects to a new port.
+/// Unplugs the board, and plugs it in again at a new port.
 fn unplug(desk: &mut Desk) {
-    desk.port = Port::new().expect("a pseudo terminal");
+    desk.port = Port::new().expect("a pseudo terminal can be opened");
 }
 
 /// Runs the board until `lizard` has exited. Returns all output of `lizard`.
@@ -100,7 +100,8 @@ fn run_to_exit(desk: &mut Desk, shell: &Shell) -> String {
     shell.last_screen()
 }
 
-/// Waits for a successful upload, and checks that the robot reports its firmware. Returns all output of `lizard`.
+/// Waits for a successful upload, and checks that the robot prints the firmware's banner. Returns all output of
+/// `lizard`.
 fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
     let screen = run_to_exit(desk, shell);
     assert!(screen.contains("\n# lizard "), "{screen}");
@@ -108,17 +109,17 @@ fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
     screen
 }
 
-/// Begins an upload to a board, and waits until some pages of the new code are written.
+/// Starts an upload to a board, and waits until some pages of the new code are written.
 fn begin_upload(desk: &mut Desk) -> Shell {
     let shell = start_lizard_flash(desk, &[]);
     let is_in_time = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
     let has_begun = is_in_time && !shell.has_ended();
-    assert!(has_begun, "the upload has begun:\n{screen}");
+    assert!(has_begun, "the upload has not begun:\n{screen}");
     shell
 }
 
-/// Returns a board whose flash has the firmware, set without an upload.
+/// Returns a board that already has the firmware, placed in its flash without an upload.
 fn board_with_firmware() -> Desk {
     let mut desk = Desk::with_new_uno();
     desk.uno.set_flash(0, &firmware());
@@ -126,7 +127,7 @@ fn board_with_firmware() -> Desk {
 }
 
 #[test]
-fn a_blank_board_is_written_and_its_robot_reports_its_firmware() {
+fn a_blank_board_is_flashed_and_its_robot_reports_the_firmware() {
     let mut desk = Desk::with_new_uno();
     let shell = start_lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
@@ -136,7 +137,7 @@ fn a_blank_board_is_written_and_its_robot_reports_its_firmware() {
 }
 
 #[test]
-fn a_board_whose_program_sends_bytes_forever_is_written_and_keeps_its_eeprom() {
+fn a_board_whose_program_sends_bytes_forever_is_flashed_and_keeps_its_eeprom() {
     let mut desk = Desk::with_new_uno();
     let program = SENDER_IMAGE.flash();
     desk.uno.set_flash(0, &program);
@@ -170,15 +171,15 @@ fn one_page_that_differs_is_written_alone() {
     desk.uno.set_flash(0x2005, &[old_byte ^ 0x10]);
     let shell = start_lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
-    let build_text = "the board has another build of lizard";
-    assert!(screen.contains(build_text), "{screen}");
+    let board_text = "the board has another build of lizard";
+    assert!(screen.contains(board_text), "{screen}");
     // Two pages: the page that differs, and the page at address 0, where the chip starts.
     let bytes_text = "\n256 bytes written and verified";
     assert!(screen.contains(bytes_text), "{screen}");
 }
 
 #[test]
-fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_written_again() {
+fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_flashed_again() {
     let mut desk = Desk::with_new_uno();
     desk.uno.set_flash(0, &SENDER_IMAGE.flash());
     let shell = begin_upload(&mut desk);
@@ -196,9 +197,12 @@ fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_written_again() {
     desk.uno.take_transmitted();
     desk.uno.take_edges();
     desk.uno.run_ms(3000);
-    assert!(desk.uno.transmitted().is_empty(), "the board sends nothing");
+    assert!(
+        desk.uno.transmitted().is_empty(),
+        "the board has sent bytes"
+    );
     let edges = desk.uno.take_edges();
-    assert!(edges.is_empty(), "no pin moves: {edges:?}");
+    assert!(edges.is_empty(), "pins have changed: {edges:?}");
     // These seconds were simulated faster than real time. A port needs real time, so the board gets a new port.
     unplug(&mut desk);
 
@@ -207,7 +211,7 @@ fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_written_again() {
 }
 
 #[test]
-fn a_board_whose_reset_button_is_pressed_during_an_upload_is_called_again_and_written() {
+fn a_board_whose_reset_button_is_pressed_during_an_upload_is_reset_again_and_flashed() {
     let mut desk = Desk::with_new_uno();
     let shell = begin_upload(&mut desk);
     desk.uno.reset();
@@ -216,7 +220,7 @@ fn a_board_whose_reset_button_is_pressed_during_an_upload_is_called_again_and_wr
 }
 
 #[test]
-fn a_byte_that_changes_after_it_was_written_is_written_again() {
+fn a_byte_that_changes_after_it_was_written_is_rewritten() {
     let mut desk = Desk::with_new_uno();
     let shell = start_lizard_flash(&desk, &[]);
     let mut has_changed = false;

@@ -1,17 +1,17 @@
-//! Tests with an old Nano. Its boot loader is slower and larger than that of a UNO, and leaves the watchdog on.
+//! Tests with an old Nano, whose boot loader is slower and larger than that of a UNO and leaves the watchdog on.
 
 use super::*;
 
 /// The address of the first byte of an old Nano's boot loader.
 const NANO_BOOT_LOADER_START: usize = 0x7800;
 
-/// Returns a Nano as it was sold until 2018, with a boot loader at 57 600 baud.
+/// Returns a Nano as sold until 2018, with a boot loader at 57 600 baud.
 fn old_nano() -> Desk {
     Desk::with_boot_loader(load_boot_loader("old-nano.hex"))
 }
 
 #[test]
-fn an_old_nano_is_found_at_its_own_baud_rate_written_and_started() {
+fn an_old_nano_is_found_at_its_own_baud_rate_flashed_and_started() {
     let mut desk = old_nano();
     let flash_before = desk.uno.flash().to_vec();
     let shell = start_lizard_flash(&desk, &["--robot", "large"]);
@@ -70,8 +70,8 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     desk.uno.stall_main(1000 * simulated_uno::CYCLES_PER_MS);
     desk.uno.run_ms(400);
     desk.uno.take_edges();
-    // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends. The RESET pin
-    // does not clear WDRF, and while WDRF is set, WDE stays set (data sheet, 11.9.2).
+    // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends. A reset by the
+    // RESET pin does not clear WDRF, and while WDRF is set, WDE stays set (data sheet, 11.9.2).
     desk.uno.reset();
     let resets_before = desk.uno.watchdog_resets();
     desk.uno.run_ms(3000);

@@ -14,7 +14,7 @@ fn send_line(desk: &mut Desk, line: &str, ms: u64) -> String {
 }
 
 #[test]
-fn only_the_robot_is_written_after_the_firmware_and_the_trims_are_kept() {
+fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept() {
     let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
     desk.uno.power_cycle();
@@ -45,7 +45,9 @@ fn only_the_robot_is_written_after_the_firmware_and_the_trims_are_kept() {
     // Then the first robot is written again, with `--json`. Its trims are unchanged.
     let shell = start_lizard_flash(&desk, &["--only-robot", "--json"]);
     let screen = run_to_exit(&mut desk, &shell);
-    let (first_name, first_hash) = first_label.split_once(' ').expect("name and hash");
+    let (first_name, first_hash) = first_label
+        .split_once(' ')
+        .expect("the label has a name and a hash");
     let version = env!("CARGO_PKG_VERSION");
     let expected_end = format!(
         r#","firmware":"{version}","robot":{{"name":"{first_name}","hash":"{first_hash}"}}}}"#
@@ -110,7 +112,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
 }
 
 #[test]
-fn no_robot_is_written_after_another_program() {
+fn no_robot_is_written_to_a_board_with_another_program() {
     let mut desk = board_with_firmware();
     // A sketch replaces the firmware. avrdude writes only the sketch's pages, so the robot's section stays in flash.
     desk.uno.set_flash(0, &SENDER_IMAGE.flash());
@@ -123,10 +125,10 @@ fn no_robot_is_written_after_another_program() {
 }
 
 #[test]
-fn avrdude_writes_the_robot_that_lizard_image_has_made() {
+fn avrdude_writes_the_robot_file_that_lizard_flash_image_has_made() {
     let (name, other_robot) = another_robot();
     let mut desk = board_with_firmware();
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let hex_path = folder.path().join("robot.hex").display().to_string();
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
     let arguments = [

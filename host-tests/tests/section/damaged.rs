@@ -207,7 +207,7 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     );
 }
 
-/// Here the gaits exceed the travel that the section states for them, and the guard accepts any margin and stroke.
+/// A section whose gaits exceed the travel that it states for them, and whose limits accept any margin and stroke.
 #[test]
 fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     let rng = &mut rng(154);
@@ -249,7 +249,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     assert!(held_count > 50, "{held_count} gaits were held");
 }
 
-/// Here a neutral angle lies outside the servo's travel, so the robot could not stand.
+/// A section in which a neutral angle lies outside the servo's travel, so that the robot could not stand.
 #[test]
 fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     for (named, _) in sections() {

@@ -92,7 +92,7 @@ fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
     assert_eq!(
         uno.peek(done_address),
         1,
-        "the program ends, and a timer has interrupted it often"
+        "the program has not ended, or the timer has interrupted it too rarely"
     );
     let bytes = (0..160)
         .map(|offset| uno.peek(results_address + offset))
@@ -110,7 +110,7 @@ fn a_program_computes_the_same_with_shared_prologues_and_epilogues() {
     // In `jumps`, the linker replaces only the first branch over a jump, which saves 2 bytes.
     assert_eq!(savings.branches, 2, "{savings:?}");
     let plain_image = link("", &object).expect("the object links");
-    let shrunk_image = link(ROUTINES, &shrunk).expect("the object links");
+    let shrunk_image = link(ROUTINES, &shrunk).expect("the rewritten object links");
     assert!(shrunk_image.symbol("__frame_save_2").is_some());
     let ((plain_results, plain_depth), (shrunk_results, shrunk_depth)) = (
         run_for_results(&plain_image),
@@ -126,7 +126,7 @@ fn a_program_computes_the_same_with_shared_prologues_and_epilogues() {
 }
 
 /// A program with a function whose last argument is on the stack, above the registers that the function pushes. The
-/// function does not push all registers between the first and the last one, and has variables on the stack.
+/// function does not push every register between the first and the last, and has variables on the stack.
 const STACK_ARGUMENT: &str = r#"
 #include <stdint.h>
 volatile uint8_t done, sum;
@@ -162,9 +162,10 @@ fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
 
 #[test]
 fn callers_do_not_rely_on_registers_that_a_shared_prologue_changes() {
-    let flags = fs::read_to_string(root().join(".cargo/config.toml")).expect(".cargo/config.toml");
+    let flags = fs::read_to_string(root().join(".cargo/config.toml"))
+        .expect(".cargo/config.toml is readable");
     let passes = flags.lines().find(|line| line.contains("\"-Cllvm-args="));
-    let passes = passes.expect("the list of LLVM passes");
+    let passes = passes.expect(".cargo/config.toml lists the LLVM passes");
     assert!(!passes.contains("ipra"), "{passes}");
 }
 
@@ -238,7 +239,7 @@ fn every_shared_prologue_and_epilogue_restores_registers_and_stack() {
             assert_eq!(
                 uno.peek(0x145),
                 1,
-                "the program ends: {first_register} {room_bytes}"
+                "the program has not ended: {first_register} {room_bytes}"
             );
             for register in CALL_SAVED_REGISTERS {
                 let value = uno.peek(0x100 + u16::from(register));
@@ -257,9 +258,13 @@ fn every_shared_prologue_and_epilogue_restores_registers_and_stack() {
             assert_eq!(
                 uno.peek(0x143),
                 0,
-                "r28 is the stack pointer: {first_register} {room_bytes}"
+                "r28 differs from the stack pointer: {first_register} {room_bytes}"
             );
-            assert_eq!(uno.peek(0x144), 1, "the timer has interrupted the program");
+            assert_eq!(
+                uno.peek(0x144),
+                1,
+                "the timer has not interrupted the program"
+            );
         }
     }
 }

@@ -15,7 +15,7 @@ use simulated_uno::{Fidelity, Image, Uno};
 
 use crate::ram_address;
 
-/// The number of functions of one program. No more functions fit into 32 KB.
+/// The number of functions of a program. No more functions fit into 32 KB.
 const FUNCTION_COUNT: usize = 40;
 
 /// The number of functions in a group. A function calls only functions of its group, so that the stack is large enough.
@@ -48,7 +48,8 @@ fn random_expression(rng: &mut Rng, variables: &[String], depth: u8) -> String {
         7 => format!("((uint16_t){left} * (uint16_t){right})"),
         _ => format!(
             "({left} {} {right})",
-            rng.choice(["<", "==", "!="]).unwrap()
+            rng.choice(["<", "==", "!="])
+                .expect("the list is not empty")
         ),
     }
 }
@@ -138,7 +139,9 @@ fn random_program(rng: &mut Rng) -> String {
             cli(); done = ticks > 20;
             for (;;) {{}}
         }}",
-        level = rng.choice(["O1", "O2", "Os"]).unwrap(),
+        level = rng
+            .choice(["O1", "O2", "Os"])
+            .expect("the list is not empty"),
         count = 2 * FUNCTION_COUNT,
     )
 }
@@ -156,16 +159,16 @@ fn run_for_return_values(image: &Image) -> Vec<[u8; 4]> {
     assert_eq!(
         uno.peek(done_address),
         1,
-        "the program ends, and a timer has interrupted it often"
+        "the program has not ended, or the timer has interrupted it too rarely"
     );
     let values_of =
         |function| [0, 1, 2, 3].map(|byte| uno.peek(results_address + 4 * function + byte));
     (0..FUNCTION_COUNT as u16).map(values_of).collect()
 }
 
-/// Returns the functions of a random program that return other values after the linker has rewritten the program, and
-/// true if the linker has rewritten a function. `None` if avr-gcc fails, because it runs out of registers or a branch
-/// is too far.
+/// Returns the numbers of the functions of a random program that return other values after the linker has rewritten the
+/// program, and true if the linker has rewritten a function. `None` if avr-gcc fails, because it runs out of registers
+/// or the target of a branch is too far away.
 fn find_differences(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = compile_to_object(&random_program(&mut Rng::with_seed(seed))).ok()?;
     let plain_image = link("", &object).ok()?;

@@ -1,5 +1,5 @@
-//! Shell for tests: starts a command in the root of the repository as a user does. While the command runs, a test reads
-//! its output, types lines, and ends the command with Ctrl-C.
+//! A shell for tests: starts a command in the root of the repository as a user does. While the command runs, a test
+//! reads its output, types lines, and ends the command with Ctrl-C.
 //!
 //! A shell without job control makes the commands that it starts with `&` ignore Ctrl-C, and a process inherits the
 //! ignored signals from its parent. If these tests are started with `&`, a command would therefore ignore Ctrl-C until
@@ -17,7 +17,7 @@ use lizard_host_tests::root;
 use lizard_time_limit::LIMIT;
 use rustix::process::{Pid, Signal, kill_process_group};
 
-/// The time after which Ctrl-C is pressed again.
+/// The time after which Ctrl-C is pressed again if the command is still running.
 const CTRL_C_INTERVAL: Duration = Duration::from_secs(1);
 
 /// A running command, with its keyboard and its screen.
@@ -48,11 +48,11 @@ impl Shell {
         let mut child = command.spawn().expect("the command starts");
         let screen = Arc::default();
         let readers = [
-            spawn_reader(child.stdout.take().expect("a pipe"), &screen),
-            spawn_reader(child.stderr.take().expect("a pipe"), &screen),
+            spawn_reader(child.stdout.take().expect("stdout is a pipe"), &screen),
+            spawn_reader(child.stderr.take().expect("stderr is a pipe"), &screen),
         ];
         // The pipe stays open, because ravedude's console would read without a pause at the end of its input.
-        let keyboard = child.stdin.take().expect("a pipe");
+        let keyboard = child.stdin.take().expect("stdin is a pipe");
         let child = Mutex::new(child);
         Self {
             command_line: [&[program], arguments].concat().join(" "),
@@ -77,14 +77,17 @@ impl Shell {
         screen
     }
 
-    /// Types a line.
+    /// Sends a line to the command's standard input.
     pub fn type_line(&mut self, line: &str) {
-        writeln!(self.keyboard, "{line}").expect("the command reads");
+        writeln!(self.keyboard, "{line}").expect("the command reads its input");
     }
 
     pub fn has_ended(&self) -> bool {
         let mut child = self.child.lock().expect("no thread has panicked");
-        child.try_wait().expect("a child of this process").is_some()
+        child
+            .try_wait()
+            .expect("the command is a child of this process")
+            .is_some()
     }
 
     /// Presses Ctrl-C repeatedly until the command ends. The test fails if the command never ends.

@@ -90,8 +90,12 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
     // code that only produces text.
     let mut tally = [[0; 2]; 2];
     for mutant in fresh::shuffle(mutants, seed) {
-        let [motion_counts, text_counts] = tally;
-        if motion_counts[1] + text_counts[1] == count {
+        if tally
+            .iter()
+            .map(|[_, tried_count]| tried_count)
+            .sum::<usize>()
+            == count
+        {
             break;
         }
         let outcome = match scratch.judge(&mutant)? {
@@ -103,9 +107,10 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
             Outcome::Missed => "MISSED".to_owned(),
         };
         println!("{}, {}: {outcome}", mutant.file, mutant.description);
-        let counts = &mut tally[usize::from(!fresh::affects_motion(&mutant.file))];
-        counts[0] += usize::from(outcome != "MISSED");
-        counts[1] += 1;
+        let kind_index = usize::from(!fresh::affects_motion(&mutant.file));
+        let [caught_count, tried_count] = &mut tally[kind_index];
+        *caught_count += usize::from(outcome != "MISSED");
+        *tried_count += 1;
     }
     for ([caught_count, tried_count], code_kind) in tally
         .into_iter()

@@ -1,5 +1,5 @@
-// Prints the result of attaching each of nine servos and of attaching a pin that does not exist. Then writes every number
-// that it receives to a servo, and prints what it reads back.
+// Prints the result of attaching each of nine servos and of attaching to a pin that does not exist. Then writes every
+// number that it receives to a servo, and prints the angle and the width that it reads back.
 #include <ServoPulses.h>
 
 Servo servos[9];
@@ -17,8 +17,8 @@ void setup() {
 void loop() {
   if (!Serial.available()) return;
   servos[0].write(Serial.parseInt());
-  Serial.read();       // the end of the line
-  servos[1].write(90); // detached
+  Serial.read();       // discards the line end
+  servos[1].write(90); // has no effect, since this servo is detached
   Serial.print(servos[0].read());
   Serial.print(' ');
   Serial.println(servos[0].readMicroseconds());

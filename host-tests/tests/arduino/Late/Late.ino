@@ -1,4 +1,4 @@
-// Blocks interrupts for 30 us at a time, longer than the library allows. The LED is on once a late edge was counted.
+// Blocks interrupts for 30 us at a time, longer than the library allows. Lights the LED once a late edge is counted.
 #include <ServoPulses.h>
 
 Servo servo;
