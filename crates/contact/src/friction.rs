@@ -12,6 +12,7 @@
 
 use crate::lag_energy::LagEnergy;
 use crate::linear::solve_symmetric;
+use crate::motor_step::Expansion;
 
 /// Position or slide of a pad: forward, left.
 pub type Point = [f64; 2];
@@ -342,7 +343,11 @@ impl Pads {
             let lag_unit = units.lags[i];
             let [bx, by] = compliance.sweep_derivatives[i];
             let lag_row = [-bx * lag_unit, -by * lag_unit];
-            let (energy, lag_torque, lag_stiffness) = compliance.lag_energies[i]
+            let Expansion {
+                energy,
+                torque: lag_torque,
+                stiffness: lag_stiffness,
+            } = compliance.lag_energies[i]
                 .expand(displacement.lags[i], eps / units.slide_size * lag_unit);
             cost += energy;
             let leg = LagDerivatives {

@@ -59,11 +59,14 @@ pub(crate) struct StrutTriangle {
     unlagged_length: f64,
 }
 
-/// The ramp `max(x, 0)` with its kink smoothed over a width `eps`: value, slope and curvature.
+/// The energy of a unit torque against a positive `x`: the ramp `max(x, 0)` with its kink smoothed over a width `eps`.
 fn smoothed_ramp(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
-        return (0.0, 0.5, 0.0);
+        return Expansion {
+            torque: 0.5,
+            ..Expansion::default()
+        };
     }
     // For a negative x the plain sum would be a difference of nearly equal numbers.
     let sum = match x > 0.0 {
@@ -71,7 +74,11 @@ fn smoothed_ramp(x: f64, eps: f64) -> Expansion {
         false => eps * eps / (length - x),
     };
     let ratio = eps / length;
-    (sum / 2.0, sum / length / 2.0, ratio * ratio / length / 2.0)
+    Expansion {
+        energy: sum / 2.0,
+        torque: sum / length / 2.0,
+        stiffness: ratio * ratio / length / 2.0,
+    }
 }
 
 impl StrutTriangle {
@@ -96,7 +103,8 @@ impl StrutTriangle {
 
     /// Magnitude of the lever arm, mm/rad, after a lag (rad) in the direction in which the strut grows.
     pub fn lever_arm_after(&self, lag: f64) -> f64 {
-        self.growth_and_derivatives(lag).1
+        let (_, lever_arm, _) = self.growth_and_derivatives(lag);
+        lever_arm
     }
 
     /// Magnitude of the lag at which the strut has grown by this length, rad; infinite if it
@@ -137,13 +145,13 @@ impl StrutTriangle {
     fn spring_energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
         let (growth, lever_arm, lever_arm_slope) = self.growth_and_derivatives(lag);
         let pull = force + rate * growth;
-        (
-            force * growth - preload * lag + rate * growth * growth / 2.0,
-            pull * lever_arm - preload,
+        Expansion {
+            energy: force * growth - preload * lag + rate * growth * growth / 2.0,
+            torque: pull * lever_arm - preload,
             // If the lever arm shrinks faster than the pull grows, the curvature is negative. Newton's method needs a
             // convex energy, so the curvature is then set to zero.
-            (rate * lever_arm * lever_arm + pull * lever_arm_slope).max(0.0),
-        )
+            stiffness: (rate * lever_arm * lever_arm + pull * lever_arm_slope).max(0.0),
+        }
     }
 }
 
@@ -160,11 +168,9 @@ impl Resistance {
 
     /// Energy, torque and stiffness at a lag that exceeds the play by `excess_lag`, rad.
     fn expand(&self, excess_lag: f64, eps: f64, stop_torque: f64) -> Expansion {
-        let (ramp_value, slope, curvature) = smoothed_ramp(excess_lag, eps);
-        let kink_of = |torque: f64| (torque * ramp_value, torque * slope, torque * curvature);
-        let add = |a: Expansion, b: Expansion| (a.0 + b.0, a.1 + b.1, a.2 + b.2);
+        let ramp = smoothed_ramp(excess_lag, eps);
         match *self {
-            Self::Stop => kink_of(stop_torque),
+            Self::Stop => Expansion::default().plus_scaled(stop_torque, ramp),
             Self::Strut {
                 triangle,
                 force,
@@ -175,18 +181,15 @@ impl Resistance {
                 let preload = force * triangle.lever_arm().abs();
                 let spring_energy = match excess_lag > 0.0 {
                     true => triangle.spring_energy(excess_lag, force, rate, preload),
-                    false => (0.0, 0.0, 0.0),
+                    false => Expansion::default(),
                 };
-                let (value, slope, curvature) = smoothed_ramp(excess_lag - end_lag, eps);
-                let end_energy = match end_lag.is_finite() {
-                    true => (
-                        stop_torque * value,
-                        stop_torque * slope,
-                        stop_torque * curvature,
-                    ),
-                    false => (0.0, 0.0, 0.0),
-                };
-                add(add(kink_of(preload), spring_energy), end_energy)
+                let energy = spring_energy.plus_scaled(preload, ramp);
+                match end_lag.is_finite() {
+                    true => {
+                        energy.plus_scaled(stop_torque, smoothed_ramp(excess_lag - end_lag, eps))
+                    }
+                    false => energy,
+                }
             }
         }
     }
@@ -201,7 +204,7 @@ impl Resistance {
                 force,
                 rate,
                 ..
-            } => triangle.spring_energy(excess_lag, force, rate, 0.0).1,
+            } => triangle.spring_energy(excess_lag, force, rate, 0.0).torque,
         }
     }
 
@@ -226,13 +229,13 @@ impl LagEnergy {
         }
         // Leg and servo are in series: both bear the same torque.
         let servo_lag = self.servo_lag(lag, eps);
-        let (motor_energy, torque, motor_stiffness) = motor.expand(servo_lag, eps);
-        let (leg_energy, _, leg_stiffness) = self.expand_leg(lag - servo_lag, eps);
-        (
-            motor_energy + leg_energy,
-            torque,
-            motor_stiffness * leg_stiffness / (motor_stiffness + leg_stiffness),
-        )
+        let motor = motor.expand(servo_lag, eps);
+        let leg = self.expand_leg(lag - servo_lag, eps);
+        Expansion {
+            energy: motor.energy + leg.energy,
+            torque: motor.torque,
+            stiffness: motor.stiffness * leg.stiffness / (motor.stiffness + leg.stiffness),
+        }
     }
 
     /// The servo's part of a lag of leg and servo together, rad.
@@ -243,8 +246,8 @@ impl LagEnergy {
             Some(motor) => {
                 let kinks = [lag - self.play, lag + self.play];
                 motor.lag_at_balance(kinks, self.stop_torque, eps, |servo_lag| {
-                    let (_, torque, stiffness) = self.expand_leg(lag - servo_lag, eps);
-                    (torque, stiffness)
+                    let leg = self.expand_leg(lag - servo_lag, eps);
+                    (leg.torque, leg.stiffness)
                 })
             }
         }
@@ -259,17 +262,17 @@ impl LagEnergy {
 
     /// Energy, torque and stiffness at a lag (rad) of the leg behind its servo.
     fn expand_leg(&self, lag: f64, eps: f64) -> Expansion {
-        let (energy_up, slope_up, curvature_up) =
-            self.upper_resistance
-                .expand(lag - self.play, eps, self.stop_torque);
-        let (energy_down, slope_down, curvature_down) =
-            self.lower_resistance
-                .expand(-lag - self.play, eps, self.stop_torque);
-        (
-            energy_up + energy_down,
-            slope_up - slope_down,
-            curvature_up + curvature_down,
-        )
+        let upper = self
+            .upper_resistance
+            .expand(lag - self.play, eps, self.stop_torque);
+        let lower = self
+            .lower_resistance
+            .expand(-lag - self.play, eps, self.stop_torque);
+        Expansion {
+            energy: upper.energy + lower.energy,
+            torque: upper.torque - lower.torque,
+            stiffness: upper.stiffness + lower.stiffness,
+        }
     }
 
     /// Magnitude of the torque with which the spring pulls the leg back at a lag, rad.
@@ -300,7 +303,8 @@ impl LagEnergy {
             Resistance::Stop if torque <= self.stop_torque => 0.0,
             // Ternary search: torque times lag minus energy has a single maximum.
             Resistance::Strut { .. } if torque <= self.stop_torque => {
-                let gain_at = |x: f64| torque * x - resistance.expand(x, 0.0, self.stop_torque).0;
+                let gain_at =
+                    |x: f64| torque * x - resistance.expand(x, 0.0, self.stop_torque).energy;
                 let (mut low, mut high) =
                     (0.0, resistance.max_excess_lag().min(std::f64::consts::PI));
                 for _ in 0..200 {
@@ -332,22 +336,24 @@ mod tests {
         StrutTriangle::new(f64::hypot(base[0], base[1]), 22.0, enclosed_angle)
     }
 
-    /// Asserts that slope and curvature of the energy agree with its difference quotients.
+    /// Asserts that torque and stiffness agree with the difference quotients of the energy.
     fn assert_derivatives(lag_energy: LagEnergy, lags: impl IntoIterator<Item = f64>) {
         for lag in lags {
-            let (_, slope, curvature) = lag_energy.expand(lag, 1e-3);
+            let Expansion {
+                torque, stiffness, ..
+            } = lag_energy.expand(lag, 1e-3);
             let expand_at = |lag| lag_energy.expand(lag, 1e-3);
             let step = 1e-6;
             let (lower, upper) = (expand_at(lag - step), expand_at(lag + step));
-            let energy_slope = (upper.0 - lower.0) / (2.0 * step);
+            let energy_slope = (upper.energy - lower.energy) / (2.0 * step);
             assert!(
-                (energy_slope - slope).abs() < 1e-4 * (1.0 + slope.abs()),
-                "{lag} {energy_slope} {slope}"
+                (energy_slope - torque).abs() < 1e-4 * (1.0 + torque.abs()),
+                "{lag} {energy_slope} {torque}"
             );
-            let torque_slope = (upper.1 - lower.1) / (2.0 * step);
+            let torque_slope = (upper.torque - lower.torque) / (2.0 * step);
             assert!(
-                (torque_slope - curvature).abs() < 1e-3 * (1.0 + curvature.abs()),
-                "{lag} {torque_slope} {curvature}"
+                (torque_slope - stiffness).abs() < 1e-3 * (1.0 + stiffness.abs()),
+                "{lag} {torque_slope} {stiffness}"
             );
         }
     }
@@ -388,12 +394,12 @@ mod tests {
             motor: None,
         };
         for lag in [-0.1, -0.05, 0.0, 0.1] {
-            assert_eq!(lag_energy.expand(lag, 0.0).0, 0.0, "{lag}");
+            assert_eq!(lag_energy.expand(lag, 0.0).energy, 0.0, "{lag}");
         }
         let (growth, lever_arm, _) = triangle.growth_and_derivatives(0.01);
         let torque = (8.0 + 0.7 * growth) * lever_arm;
-        assert!((lag_energy.expand(0.11, 0.0).1 - torque).abs() < 1e-9);
-        assert_eq!(lag_energy.expand(-0.11, 0.0).1, -STOP_TORQUE);
+        assert!((lag_energy.expand(0.11, 0.0).torque - torque).abs() < 1e-9);
+        assert_eq!(lag_energy.expand(-0.11, 0.0).torque, -STOP_TORQUE);
         assert_eq!(
             lag_energy.stops(),
             [-0.1, 0.1 + triangle.lag_at_growth(5.0)]
@@ -432,8 +438,8 @@ mod tests {
         }
         // Far below its kink the smoothed ramp is eps^2 / (4 |x|), even if that is many orders of
         // magnitude less than |x|.
-        let (value, slope, _) = smoothed_ramp(-0.5, 1e-9);
-        assert!((value / 5e-19 - 1.0).abs() < 1e-9, "{value}");
-        assert!((slope / 1e-18 - 1.0).abs() < 1e-9, "{slope}");
+        let ramp = smoothed_ramp(-0.5, 1e-9);
+        assert!((ramp.energy / 5e-19 - 1.0).abs() < 1e-9, "{ramp:?}");
+        assert!((ramp.torque / 1e-18 - 1.0).abs() < 1e-9, "{ramp:?}");
     }
 }

@@ -15,8 +15,26 @@ pub(crate) struct ServoState {
     pub rate: f64,
 }
 
-/// The value, slope and curvature of an energy at some angle: energy, torque and stiffness.
-pub(crate) type Expansion = (f64, f64, f64);
+/// An energy near some angle, to second order.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Expansion {
+    pub energy: f64,
+    /// Slope of the energy, per rad.
+    pub torque: f64,
+    /// Curvature of the energy, per rad^2.
+    pub stiffness: f64,
+}
+
+impl Expansion {
+    /// The sum of this expansion and `factor` times another one.
+    pub fn plus_scaled(self, factor: f64, other: Self) -> Self {
+        Self {
+            energy: self.energy + factor * other.energy,
+            torque: self.torque + factor * other.torque,
+            stiffness: self.stiffness + factor * other.stiffness,
+        }
+    }
+}
 
 /// The energy of a motor in a short time step, as a function of the servo's lag. The lag is the angle, rad, by
 /// which the servo is behind its reference: the angle that it would reach in the step at an unchanged rate.
@@ -98,22 +116,22 @@ impl MotorStep {
             ),
             false => (0.0, 0.0),
         };
-        (
-            energy
+        Expansion {
+            energy: energy
                 + self.inertial_stiffness * deviation * deviation / 2.0
                 + self.pin_torque * smoothed_turn
                 + self.slider_torque * lag,
-            torque.copysign(error)
+            torque: torque.copysign(error)
                 + self.inertial_stiffness * deviation
                 + self.pin_torque * direction
                 + self.slider_torque,
-            stiffness + self.inertial_stiffness + self.pin_torque * curvature,
-        )
+            stiffness: stiffness + self.inertial_stiffness + self.pin_torque * curvature,
+        }
     }
 
     /// Lag of an unloaded servo at the end of the step, to first order, rad.
     pub fn unloaded_lag(&self) -> f64 {
-        -self.expand(0.0, 0.0).1 / self.inertial_stiffness
+        -self.expand(0.0, 0.0).torque / self.inertial_stiffness
     }
 
     /// The lag (rad) at which the motor's torque equals the load's. `load_at` returns the load's torque and
@@ -136,7 +154,9 @@ impl MotorStep {
         let mut lag = guess.max(low).min(high);
         let mut longest_step = max_deviation;
         for _ in 0..MAX_ITERATIONS {
-            let (_, torque, stiffness) = self.expand(lag, eps);
+            let Expansion {
+                torque, stiffness, ..
+            } = self.expand(lag, eps);
             let (load, load_stiffness) = load_at(lag);
             let torque_error = torque - load;
             match torque_error > 0.0 {
@@ -191,13 +211,15 @@ mod tests {
             let lag = f64::from(step) / 200.0 + 1e-4;
             let expand_at = |lag: f64| motor_step.expand(lag, 1e-3);
             let (lower, upper) = (expand_at(lag - 1e-6), expand_at(lag + 1e-6));
-            let (_, torque, stiffness) = expand_at(lag);
-            let energy_slope = (upper.0 - lower.0) / 2e-6;
+            let Expansion {
+                torque, stiffness, ..
+            } = expand_at(lag);
+            let energy_slope = (upper.energy - lower.energy) / 2e-6;
             assert!(
                 (energy_slope - torque).abs() < 1e-3 * torque.abs().max(1.0),
                 "{lag}"
             );
-            let torque_slope = (upper.1 - lower.1) / 2e-6;
+            let torque_slope = (upper.torque - lower.torque) / 2e-6;
             assert!(
                 (torque_slope / stiffness - 1.0).abs() < 1e-2,
                 "{lag} {torque_slope} {stiffness}"

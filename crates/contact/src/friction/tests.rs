@@ -33,7 +33,7 @@ fn cost_of(pads: &Pads, displacement: &Displacement) -> f64 {
     let energy_of = |compliance: Compliance| -> f64 {
         let lags = displacement.lags.iter();
         lags.zip(compliance.lag_energies)
-            .map(|(lag, drive)| drive.expand(*lag, 0.0).0)
+            .map(|(lag, drive)| drive.expand(*lag, 0.0).energy)
             .sum()
     };
     friction + pads.compliance.map_or(0.0, energy_of)

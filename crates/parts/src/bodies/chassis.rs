@@ -256,8 +256,9 @@ fn add_battery(builder: &mut Builder) {
 fn add_deck(builder: &mut Builder) {
     let (stack, parts) = (builder.stack, builder.parts);
     let [x, y] = STANDOFF_DISTANCES;
-    let bar_between =
-        |a: (f64, f64), b: (f64, f64)| Shape::bar(vector(a.0, a.1), vector(b.0, b.1), 5.0);
+    let bar_between = |(ax, ay): (f64, f64), (bx, by): (f64, f64)| {
+        Shape::bar(vector(ax, ay), vector(bx, by), 5.0)
+    };
     let mut filled = vec![
         Shape::rectangle(
             Vector::default(),

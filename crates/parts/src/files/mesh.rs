@@ -261,7 +261,7 @@ fn corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize
         .filter(|(corner, _)| *corner != a && *corner != b);
     let mut sorted_corners: Vec<(f64, usize)> =
         other_corners.filter_map(distance_and_corner_of).collect();
-    sorted_corners.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sorted_corners.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     sorted_corners
         .into_iter()
         .map(|(_, corner)| corner)

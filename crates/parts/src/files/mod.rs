@@ -42,7 +42,8 @@ impl File {
 /// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not form a closed surface.
 pub fn part_files(part: &Part, kerf: f64) -> Result<Vec<File>, BuildProblem> {
     let solid = Solid::of(&part.prisms);
-    let printed_solid = Solid::of(&part.printed_layers().0);
+    let (printed_layers, _) = part.printed_layers();
+    let printed_solid = Solid::of(&printed_layers);
     let mesh = match printed_solid.is_closed() {
         true => Mesh::of(&printed_solid),
         false => return Err(BuildProblem::OpenSurface(part.name.clone())),

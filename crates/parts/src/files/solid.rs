@@ -171,7 +171,7 @@ impl SolidBuilder {
                     cuts.into_iter().map(position_and_index).collect();
                 positions[0].0 = 0.0;
                 positions[1].0 = position_along(side, to, to).max(SAME_POINT_MM);
-                positions.sort_by(|a, b| a.0.total_cmp(&b.0));
+                positions.sort_by(|(a, _), (b, _)| a.total_cmp(b));
                 positions.dedup_by_key(|(_, point)| *point);
                 let is_uncut = positions.len() == 2;
                 let piece_of = |pair: &[(f64, usize)]| {

@@ -36,8 +36,8 @@ pub struct Label {
 
 /// The part of the drawing that is shown, mm, before it is scaled to pixels.
 pub(super) struct Frame {
-    low: (f64, f64),
-    high: (f64, f64),
+    low: Vector,
+    high: Vector,
 }
 
 impl Frame {
@@ -48,13 +48,13 @@ impl Frame {
         let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
         let margin = if is_close_up { CLOSE_UP_MARGIN } else { 0.0 };
         Self {
-            low: (low.x - margin, low.y - margin),
-            high: (high.x + margin, high.y + margin),
+            low: Vector::new(low.x - margin, low.y - margin),
+            high: Vector::new(high.x + margin, high.y + margin),
         }
     }
 
     fn contains(&self, (x, y): (f64, f64)) -> bool {
-        self.low.0 <= x && x <= self.high.0 && self.low.1 <= y && y <= self.high.1
+        self.low.x <= x && x <= self.high.x && self.low.y <= y && y <= self.high.y
     }
 }
 
@@ -81,8 +81,8 @@ impl Drawing {
             false => 0.0,
         };
         let drawing_width = width - 2.0 * (MARGIN + side_margin);
-        let scale = drawing_width / (high.0 - low.0);
-        let height = ((high.1 - low.1) * scale + 2.0 * MARGIN).ceil();
+        let scale = drawing_width / (high.x - low.x);
+        let height = ((high.y - low.y) * scale + 2.0 * MARGIN).ceil();
         let left_offset = MARGIN + side_margin;
         // Each colour is named once, and points are given in whole tenths of a pixel from the previous one. That makes
         // the text a quarter as long.
@@ -102,8 +102,8 @@ impl Drawing {
                 let mut start = None;
                 for (x, y) in page_loop {
                     let point = (
-                        tenths_of(x - low.0, left_offset),
-                        tenths_of(y - low.1, MARGIN),
+                        tenths_of(x - low.x, left_offset),
+                        tenths_of(y - low.y, MARGIN),
                     );
                     let (x, y) = (point.0 - position.0, point.1 - position.1);
                     // After the first point each pair is a relative line, and a minus sign separates numbers.
@@ -140,8 +140,8 @@ impl Drawing {
         text.push_str("</g>\n");
         let page_point_of = |(x, y): (f64, f64)| {
             (
-                (x - low.0) * scale + left_offset,
-                (y - low.1) * scale + MARGIN,
+                (x - low.x) * scale + left_offset,
+                (y - low.y) * scale + MARGIN,
             )
         };
         let shown_labels: Vec<_> = labels
@@ -165,7 +165,7 @@ impl Drawing {
             let mut column: Vec<_> = page_labels
                 .filter(|((x, _), _)| (*x < middle) == is_left)
                 .collect();
-            column.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
+            column.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
             write_column(&mut text, &column, is_left, width, height);
         }
         text.push_str("</svg>\n");

@@ -153,10 +153,10 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
 
 /// The guide's text about holes that have to be drilled, and about the marks on the parts.
 fn drilling_text(parts: &[Part]) -> String {
-    let hole_text_of = |part: &Part| match part.printed_layers().1 {
-        0 => None,
-        1 => Some(format!("a hole in each {}", part.name)),
-        count => Some(format!("{count} holes in each {}", part.name)),
+    let hole_text_of = |part: &Part| match part.printed_layers() {
+        (_, 0) => None,
+        (_, 1) => Some(format!("a hole in each {}", part.name)),
+        (_, count) => Some(format!("{count} holes in each {}", part.name)),
     };
     let hole_texts: Vec<_> = parts.iter().filter_map(hole_text_of).collect();
     format!(

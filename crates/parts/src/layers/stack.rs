@@ -200,7 +200,8 @@ impl Stack {
 
     /// True if a leg's crank is thick enough above the nut that is sunk into it.
     pub fn crank_holds_nut(&self, parts: &Parts) -> bool {
-        self.anchor[1] - self.anchor_nut(parts).0 >= MIN_NUT_COVER
+        let (pocket_top, _) = self.anchor_nut(parts);
+        self.anchor[1] - pocket_top >= MIN_NUT_COVER
     }
 }
 

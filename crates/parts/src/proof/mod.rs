@@ -152,7 +152,7 @@ impl Proof {
         let clashes = separate_clashes
             .chain(touching_clashes)
             .filter(|(clash, _)| clash.is_some());
-        let (worst_clash, _) = clashes.min_by(|a, b| a.1.total_cmp(&b.1)).unzip();
+        let (worst_clash, _) = clashes.min_by(|(_, a), (_, b)| a.total_cmp(b)).unzip();
         worst_clash.flatten().map_or(Ok(()), Err)
     }
 }

@@ -36,7 +36,7 @@ pub fn worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let mut too_near: Vec<_> = measured_tasks
         .filter(|(mm, task)| *mm < task.min_distance())
         .collect();
-    too_near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    too_near.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let too_near = too_near.into_iter().take(MAX_WORST_TASKS);
     let too_near: Vec<_> = too_near.map(|(_, task)| task.clone()).collect();
     (!too_near.is_empty()).then_some(too_near)

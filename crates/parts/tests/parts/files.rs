@@ -14,8 +14,7 @@ fn holes_of(body: &Body) -> Vec<(f64, f64)> {
     let mut holes: Vec<(f64, f64)> = Vec::new();
     for prism in &body.prisms {
         for (middle, radius) in Outline::of(prism).loops().filter_map(Loop::circle) {
-            let is_same_hole =
-                |hole: &(f64, f64)| (hole.0 - middle.x).hypot(hole.1 - middle.y) < 1e-6;
+            let is_same_hole = |&(x, y): &(f64, f64)| (x - middle.x).hypot(y - middle.y) < 1e-6;
             if (radius - 1.6).abs() < 1e-6 && !holes.iter().any(is_same_hole) {
                 holes.push((middle.x, middle.y));
             }
@@ -28,7 +27,8 @@ fn holes_of(body: &Body) -> Vec<(f64, f64)> {
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
     let holes = holes_of(body(assembly, name));
-    let error_of = |a: &(f64, f64), b: &(f64, f64)| ((a.0 - b.0).hypot(a.1 - b.1) - mm).abs();
+    let error_of =
+        |(ax, ay): &(f64, f64), (bx, by): &(f64, f64)| ((ax - bx).hypot(ay - by) - mm).abs();
     let has_pair = holes
         .iter()
         .any(|a| holes.iter().any(|b| error_of(a, b) < 1e-9));
@@ -60,8 +60,7 @@ fn the_distance_between_two_holes_is_the_length_of_the_link() {
             assert_hole_distance(&assembly, &link, crank.hypot(arm));
             let holes = holes_of(assembly.body(&link).expect("each servo has a link"));
             for length in [crank, arm] {
-                let is_at_distance =
-                    |hole: &(f64, f64)| (hole.0.hypot(hole.1) - length).abs() < 1e-9;
+                let is_at_distance = |(x, y): &(f64, f64)| (x.hypot(*y) - length).abs() < 1e-9;
                 assert!(holes.iter().any(is_at_distance), "{name} {link} {length}");
             }
         }
@@ -105,7 +104,7 @@ fn the_pivots_of_the_plate_are_where_the_kinematics_places_them() {
     let holes = holes_of(body(&assembly, "plate"));
     for leg in &assembly.layout().legs {
         for pivot in [leg.crank_pivot, leg.follower_pivot] {
-            let is_at_pivot = |hole: &(f64, f64)| (hole.0 - pivot.x).hypot(hole.1 - pivot.y) < 1e-9;
+            let is_at_pivot = |&(x, y): &(f64, f64)| (x - pivot.x).hypot(y - pivot.y) < 1e-9;
             assert!(holes.iter().any(is_at_pivot), "{pivot:?}");
         }
     }

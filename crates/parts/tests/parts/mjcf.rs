@@ -54,7 +54,8 @@ fn loops_are_closed_where_the_robots_joints_are() {
                 let attribute_of = |attribute: &str| connect.attribute(attribute).expect(attribute);
                 let (first, second) = (attribute_of("body1"), attribute_of("body2"));
                 assert!(bodies_by_name.contains_key(second), "{second}");
-                let anchor = bodies_by_name[first].0.point(&numbers(connect, "anchor"));
+                let (placement, _) = bodies_by_name[first];
+                let anchor = placement.point(&numbers(connect, "anchor"));
                 let joint = joints[attribute_of("name")] * 1e-3;
                 let error = (anchor[0] - joint.x).hypot(anchor[1] - joint.y);
                 assert!(error < 1e-8, "{name} {connect:?} {error}");
@@ -252,7 +253,7 @@ fn a_slotted_strut_pulls_with_its_springs_force_and_yields_in_one_direction() {
     let document = Document::parse(&text).expect("the file is well-formed XML");
     let bodies_by_name = bodies(&document);
     for leg in LEG_NAMES {
-        let slot = bodies_by_name[&format!("slot {leg}")].1;
+        let (_, slot) = bodies_by_name[&format!("slot {leg}")];
         // A steel wire of 0.6 mm, about 0.7 m long, weighs about 1.6 g.
         let grams = 1000.0 * numbers(child(slot, "inertial"), "mass")[0];
         assert!((0.5..2.5).contains(&grams), "{grams}");

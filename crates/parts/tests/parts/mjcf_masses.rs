@@ -23,7 +23,8 @@ pub fn mass_and_centre(text: &str) -> (f64, [f64; 3]) {
             *sum += grams * coordinate * 1000.0;
         }
     }
-    let plate_height = 1000.0 * bodies_by_name["chassis"].0.position[2];
+    let (chassis_placement, _) = bodies_by_name["chassis"];
+    let plate_height = 1000.0 * chassis_placement.position[2];
     let [right, forward, up] = moment.map(|component| component / mass);
     (mass, [forward, -right, up - plate_height])
 }
