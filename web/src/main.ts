@@ -50,14 +50,14 @@ import { World } from './view/world';
 import { Writer } from './view/writer';
 import { WORDS, unknownWords } from './words';
 
-/** Number of updates of the shown numbers per second. */
+/** Rate at which the shown numbers are updated, 1/s. */
 const NUMBER_UPDATES_PER_SECOND = 10;
-/** Scope, margins and maps are drawn once per this number of pictures, since painting costs most. */
-const PICTURES_PER_DRAWING = 3;
+/** Number of animation frames per drawing of scope, margins and maps, since painting costs the most time. */
+const FRAMES_PER_DRAWING = 3;
 
 declare global {
   interface Window {
-    /** The session, for tests and for the browser's console. */
+    /** The page's session, for tests and for the browser's console. */
     lizard?: Session;
   }
 }
@@ -94,7 +94,7 @@ async function start(): Promise<void> {
       ),
     onTrouble(cause, message) {
       if (cause === 'fault' && message !== null) remote.buzz();
-      // Offers this firmware to a board without it.
+      // A board without this firmware can get it at once.
       const remedy = { label: 'Write firmware and robot to it', action: () => flash.write('all') };
       troubles.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
@@ -139,7 +139,7 @@ async function start(): Promise<void> {
   const flash = new FlashView(session, writer);
   const setup: Setup = new Setup(session, writer, () => connectBoard());
   const address = new Address(session, choice.chosenFile);
-  // Loaded when its room is opened.
+  // The view of the room Measure, loaded when the room is opened.
   let measure: MeasureView | null = null;
   const openMeasure = async () => {
     if (element('room-measure').hidden || measure || !session.description) return;
@@ -156,35 +156,35 @@ async function start(): Promise<void> {
     });
   });
 
-  // When the page opens, the robot walks slowly until the user acts, unless the system asks for reduced motion.
+  // When the page opens, the robot walks slowly until the user acts, unless the system is set to reduced motion.
   let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  const beginIntroWalk = () => {
-    const gait = gaitFor({ ahead: 1, left: 0 }, predictor.gaits);
+  const startIntroWalk = () => {
+    const gait = gaitFor({ forward: 1, left: 0 }, predictor.gaits);
     if (isIntroOver || !gait || isSetupOpen() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
     isIntroOver = true;
     void session.drive(`${WORDS.speed} 50`).then(() => session.drive(gait));
   };
-  // The user has taken over.
+  // Any press of a pointer or a key ends the intro.
   for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });
-  // On a slow machine the predictions come before the robot's banner.
-  follow([session.state.banner, predictor.predictions], () => session.banner && beginIntroWalk());
+  // On a slow machine the predictions may arrive before the robot's banner.
+  follow([session.state.banner, predictor.predictions], () => session.banner && startIntroWalk());
 
   session.followRobot(({ words }) => {
-    const strangeWords = unknownWords([...drive.commands], words);
-    if (strangeWords.length > 0) troubles.setMessage('page', `The core does not know these words of the page: ${strangeWords.join(', ')}.`);
+    const unknown = unknownWords([...drive.commands], words);
+    if (unknown.length > 0) troubles.setMessage('page', `The core does not know these words of the page: ${unknown.join(', ')}.`);
   });
   effect(() => {
     const { link, banner, description, isReal } = session;
     if (!link) return;
     const isBusy = writer.isBusy.value;
     setText(element('where'), boardText(link.name, banner, description.hash));
-    // Reserves the row's height for the line that most likely follows.
+    // Reserves the height of the row for the text that most likely follows.
     const { version, name, hash } = description;
     element('where').parentElement!.dataset.room = boardText(link.name, { version, robot: { name, hash } }, hash);
     element('heard').hidden = !isReal;
     element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
     connectButton.textContent = isReal ? 'Back to the simulation' : 'Connect a board…';
-    // The boot loader uses the line, so nothing else may take it.
+    // While the boot loader uses the line, nothing else may take it.
     connectButton.disabled = isBusy || (!isReal && !hasSerial());
     radioButton.disabled = isBusy;
     radioButton.hidden = isReal || bluetoothProblem() !== null;
@@ -209,8 +209,8 @@ async function start(): Promise<void> {
     setText(element('cycle'), formatDisplacement(measured) || '–');
     setText(element('predicted'), formatDisplacement(prediction) || '–');
     // Rigid legs without play do not lag.
-    const isLagging = canLag(session.floor);
-    for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !isLagging;
+    const mayLag = canLag(session.floor);
+    for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !mayLag;
     setText(element('lag'), measured ? `${measured.lag.toFixed(1)}°` : '–');
     setText(element('share'), prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
     showMessage(element('refusal'), last?.fault ?? last?.scene?.refusal ?? '');
@@ -218,7 +218,7 @@ async function start(): Promise<void> {
 
   const loadChosenFile = async () => {
     try {
-      await session.choose(choice.chosenFile);
+      await session.loadFile(choice.chosenFile);
       troubles.setMessage('robot', null);
     } catch (error) {
       choice.select(session.file);
@@ -227,10 +227,10 @@ async function start(): Promise<void> {
     }
   };
   const ownRobot = new OwnRobot(session, troubles, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
-  /** Loads another robot; the user's changed one is put aside instead of being erased. */
-  const replaceRobot = async (load: () => Promise<unknown>) => {
+  /** Loads another robot with `loadRobot`, and puts the user's changed robot aside, so that it is not lost. */
+  const replaceRobot = async (loadRobot: () => Promise<unknown>) => {
     const saved = browserStorage.getChanges();
-    await load();
+    await loadRobot();
     ownRobot.putAside(saved);
   };
   choice.onChange(() => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobot.restore(choice.chosenOwnIndex)));
@@ -251,9 +251,9 @@ async function start(): Promise<void> {
   }
   connectButton.addEventListener('click', () => void connectBoard());
   radioButton.addEventListener('click', () => void connectBoard(() => BluetoothLink.open()));
-  document.addEventListener('visibilitychange', () => document.hidden && session.letGo());
-  // A board would walk on when its page is closed: it is stopped, and the browser asks. The browser also asks while an
-  // image is being written.
+  document.addEventListener('visibilitychange', () => document.hidden && session.stopIfWalking());
+  // A board would walk on after its page is closed, so it is stopped, and the browser asks the user to confirm. It also
+  // asks while an image is being written to a board.
   addEventListener('beforeunload', (event) => {
     if (session.isBoardWalking) void session.stop();
     else if (!(writer.isBusy.value && session.isReal)) return;
@@ -262,8 +262,8 @@ async function start(): Promise<void> {
 
   const saved = browserStorage.getChanges();
   const addressFile = addressParts(location.hash).get('file');
-  const wantedFile = addressFile ?? saved?.file;
-  const isKnownFile = wantedFile === undefined || choice.select(wantedFile);
+  const requestedFile = addressFile ?? saved?.file;
+  const isKnownFile = requestedFile === undefined || choice.select(requestedFile);
   await loadChosenFile();
   const reportMissing = (file: string) => troubles.setMessage('robot', `This page has no ${file}.toml, which its address asks for.`);
   if (addressFile !== null && !isKnownFile) reportMissing(addressFile);
@@ -279,7 +279,7 @@ async function start(): Promise<void> {
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);
-    // Back and forward change the room, and the robot stays.
+    // Within the page's own entries, Back and Forward change only the room, and the robot stays.
     if (state === PAGE_ENTRY) return address.scheduleUpdate();
     const file = addressParts(hash).get('file');
     if (file === null) return void replaceRobot(async () => (await text.loadFromAddress(hash)) && address.start());
@@ -287,13 +287,13 @@ async function start(): Promise<void> {
     else reportMissing(file);
   });
   window.lizard = session;
-  // Only after everything that the page needs at first is loaded.
+  // The service worker starts only after everything that the page needs first is loaded.
   void keepOffline((loadNewer) => {
     element('fresh').hidden = false;
     element('fresh-take').onclick = loadNewer;
   });
   let msSinceNumbers = 0;
-  let pictureCount = 0;
+  let frameCount = 0;
   runInRealTime(
     (ms) => {
       msSinceNumbers += ms;
@@ -306,8 +306,8 @@ async function start(): Promise<void> {
       if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, recordView.frameToDraw(session.last), recordView.companionFrame);
       recordView.afterDrawing();
       parts.render(session.last);
-      pictureCount += 1;
-      if (pictureCount % PICTURES_PER_DRAWING === 0) {
+      frameCount += 1;
+      if (frameCount % FRAMES_PER_DRAWING === 0) {
         scope.draw(latestCycle);
         margins.draw(session.last?.scene ?? null);
         for (const map of maps) map.draw();
@@ -324,7 +324,7 @@ async function start(): Promise<void> {
   );
 }
 
-/** Returns the message that names the board and its robot. */
+/** Returns the text that names the board and its robot; `hash` is that of the page's robot. */
 function boardText(name: string, banner: BoardBanner | undefined, hash: string): string {
   if (banner === undefined) return `waiting for the ${name}`;
   if (banner === null) return `on a ${name} without this firmware`;

@@ -19,22 +19,22 @@ import { SimulatedBoard } from './uno/board';
 import { type CycleDisplacement, WalkedPath } from './walked-path';
 import { DONE_LINE, GAITS, WORDS } from './words';
 
-/** Number of frames of 20 ms from one reported pose of a board to the next; a radio at 9600 baud carries no more. */
+/** Number of frames of 20 ms per pose that a board reports; a radio at 9600 baud cannot carry more poses. */
 const WATCH_FRAMES = { usb: 2, radio: 10, simulated: 1 };
 /** Time from a reset within which this firmware sends its banner, ms. */
 const BANNER_TIMEOUT_MS = 2500;
 /** Time within which a board that was not reset answers, ms. */
 const ANSWER_TIMEOUT_MS = 500;
 /**
- * Number of times that a board that was not reset is asked: its autobaud needs up to five lines, and a radio may lose
- * some.
+ * Number of `status` lines sent to a board that was not reset: it needs up to five lines to find the baud rate, and a
+ * radio may lose some.
  */
 const MAX_ATTEMPTS = { usb: 5, radio: 12, simulated: 1 };
-/** Time that the answer to `status` may take before `status` is sent again, ms. */
+/** Time that the answer to `status` may take, ms. */
 const STATUS_TIMEOUT_MS = 1000;
 /** Time a board gets to stop before the port is closed, ms. */
 const STOP_TIMEOUT_MS = 1000;
-/** Time after a reset within which `boot` has acted (three seconds), ms. */
+/** Time after a reset within which `boot` has acted, which it does after three seconds, ms. */
 const BOOT_TIMEOUT_MS = 4000;
 const FRAME_SECONDS = 0.02;
 /** Longest simulated time between two updates of `clock`, ms. */
@@ -42,18 +42,18 @@ const CLOCK_STEP_MS = 5;
 
 /** The fault of a robot that has received nothing for the `deadman` time. */
 const LINK_FAULT = 'link';
-/** The reason why nothing is written by radio. */
+/** The reason why nothing can be written by radio. */
 export const NO_WRITING_BY_RADIO = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
 
-/** What happens in a session; everything else is its state. */
+/** Callbacks for the events of a session; everything else is in its state. */
 export interface SessionListener {
-  /** Called for each frame and its duration in seconds. */
+  /** Called for each frame, which lasted `seconds`. */
   onFrame(frame: Frame, widths: Four<number> | null, seconds: number): void;
-  /** Called for each pulse: its pin by the Arduino number, the cycle at which it rose, and its width in cycles. */
+  /** Called for each pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
   onPulse(pin: number, rise: number, width: number): void;
-  /** Called with each line that is sent and is to be shown. */
+  /** Called with each sent line that is to be shown. */
   onSent(line: string): void;
-  /** Called with each line that is received and is to be shown. */
+  /** Called with each received line that is to be shown. */
   onReceived(line: string): void;
   /** Asks the user whether the board is a UNO: on a Nano, writing would overwrite the boot loader. */
   confirmUno(): boolean;
@@ -61,8 +61,8 @@ export interface SessionListener {
   onTrouble(cause: Cause, message: string | null): void;
 }
 
-/** Called with the progress of a write: the finished pages of a step, and all of them. */
-export type Progress = (step: 'reading' | 'writing' | 'verifying' | 'again', done: number, of: number) => void;
+/** Called with the progress of a write: `done` of the `total` pages of a step are finished. */
+export type Progress = (step: 'reading' | 'writing' | 'verifying' | 'again', done: number, total: number) => void;
 
 const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof banner === 'object' && banner !== null;
 
@@ -72,42 +72,42 @@ export class Session {
   file = '';
   /** The robot.toml of the page's robot. */
   toml = '';
-  /** The unchanged robot.toml of the robot's file. */
+  /** The unchanged text of the robot's file. */
   original = '';
   /** The predictions of the gaits in `original`, which come with the page; null if they are missing. */
   private predictions: Predictions | null = null;
   /** The robot's section of flash. */
   robotSection: Uint8Array = new Uint8Array();
-  /** The last frame. */
+  /** The last frame; null before the first. */
   last: Frame | null = null;
-  /** Voltage of the simulated board's supply, V. */
+  /** Supply voltage of the simulated board, V. */
   volts = 5;
-  /** The names of the inputs whose contacts are closed in the simulation. */
+  /** The names of the inputs whose simulated contacts are closed. */
   readonly closedInputs = new Set<string>();
-  /** True if the page may send lines of its own. */
+  /** True if the page may send lines that no user has asked for: none while a byte would cancel `boot`. */
   mayAsk = false;
   dialogue!: Dialogue;
   private deadman!: Deadman;
   /** Number of unanswered lines that make the robot walk. */
-  private pendingDrives = 0;
-  /** Number of times that `stop` was asked for so far. */
+  private pendingDriveCount = 0;
+  /** Number of calls of `ask` with `stop` so far. */
   private stopCount = 0;
   /** The time at which the robot's last line arrived, on the page's clock, ms. */
   private lastLineAt = performance.now();
-  /** The firmware, which is the same for every robot. */
+  /** The firmware's image, which is the same for every robot. */
   private firmware: Uint8Array | null = null;
   private bootLoader: Uint8Array | null = null;
   private readonly walkedPath = new WalkedPath();
-  /** Time for which the robot has been followed, s: simulated time, or the frames of a real board's reported poses. */
+  /** The robot's time, s: simulated time, or the total duration of the frames that a real board has reported. */
   clock = 0;
   /** Resolves the promise of `waitForBanner`. */
   private resolveBanner: () => void = () => {};
   /** True if a board without this firmware has the boot loader of a UNO. */
   hasBootLoader = false;
-  /** True while a board on USB sends its poses. */
+  /** True once the board has been told to report its poses. */
   private isWatching = false;
-  /** Number of calls of `choose` so far: a file that arrives after a later call is dropped. */
-  private choiceCount = 0;
+  /** Number of calls of `loadFile` so far: a file that arrives after a later call is dropped. */
+  private loadCount = 0;
 
   constructor(
     readonly robot: Robot,
@@ -115,7 +115,7 @@ export class Session {
   ) {}
 
   get description(): Description {
-    // Only the time before the first robot has none, and then no view asks.
+    // There is none only before the first robot is loaded, and no view reads it then.
     return this.state.description.value!;
   }
 
@@ -123,7 +123,7 @@ export class Session {
     return this.state.link.value!;
   }
 
-  /** Calls `show` with the robot, if there is one, and with each later one. */
+  /** Calls `show` with the current robot, if there is one, and with each later one. */
   followRobot(show: (description: Description) => void): void {
     this.state.description.subscribe((description) => description && show(description));
   }
@@ -148,15 +148,15 @@ export class Session {
 
   /**
    * Loads a robot by its file name and restarts the simulated UNO with it; a real board stays connected. Throws an
-   * error for the user, and then the previous robot stays.
+   * error with a message for the user if the robot cannot be loaded; the previous robot then stays.
    */
-  async choose(name: string): Promise<void> {
-    const choiceNumber = ++this.choiceCount;
+  async loadFile(name: string): Promise<void> {
+    const loadNumber = ++this.loadCount;
     const previousFile = this.file;
     this.file = '';
     try {
       const [toml, predictions, firmware] = await Promise.all([files.toml(name), files.predictions(name), this.firmware ?? files.firmware()]);
-      if (choiceNumber !== this.choiceCount) return;
+      if (loadNumber !== this.loadCount) return;
       this.firmware = firmware;
       const refusal = this.loadToml(toml, null, [toml, predictions]);
       if (refusal) throw new Error(`${name}.toml: ${refusal.refused}`);
@@ -164,14 +164,14 @@ export class Session {
       this.file = name;
       this.storeChanges();
     } catch (error) {
-      // A later choice has replaced this one.
-      if (choiceNumber !== this.choiceCount) return;
+      // A later call has replaced this one.
+      if (loadNumber !== this.loadCount) return;
       this.file = previousFile;
       throw error;
     }
   }
 
-  /** Loads a changed robot.toml: the simulated UNO restarts with it and keeps its saved settings. */
+  /** Loads a changed robot.toml or returns its refusal. The simulated UNO restarts with it and keeps its EEPROM. */
   async change(toml: string): Promise<Refused | null> {
     const refusal = this.loadToml(toml);
     if (refusal) return refusal;
@@ -180,7 +180,7 @@ export class Session {
     return null;
   }
 
-  /** Restores saved changes if the robot's file is still the same; returns true if they were restored. */
+  /** Restores saved changes if the robot's file has not changed since; returns true if they were restored. */
   async restoreSaved({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
@@ -218,7 +218,7 @@ export class Session {
     if (!this.isReal) await this.simulate(keepsEeprom ? this.simulated?.board.eeprom : undefined);
   }
 
-  /** Firmware and robot as one image of flash. */
+  /** The firmware and the robot as one image of the flash. */
   get image(): Uint8Array {
     const { firmware, robotSection, description } = this;
     if (!firmware) throw new Error('the firmware has not come yet');
@@ -233,12 +233,12 @@ export class Session {
     return this.banner !== undefined && this.banner !== null;
   }
 
-  /** True if the board has exactly this robot. */
+  /** True if the board has exactly the page's robot. */
   get hasThisRobot(): boolean {
     return isBanner(this.banner) && this.banner.robot?.hash === this.description.hash;
   }
 
-  /** The board's robot by its banner, if it is not the page's robot; else null. */
+  /** The board's robot according to its banner; null if it is the page's robot or unknown. */
   get otherRobot(): { name: string; hash: string } | null {
     return isBanner(this.banner) && !this.hasThisRobot ? this.banner.robot : null;
   }
@@ -250,23 +250,23 @@ export class Session {
 
   /** True if the link leads to a real board. */
   get isReal(): boolean {
-    // Without a robot there is no link yet.
+    // There is no link before the first robot is loaded.
     return this.link !== null && this.link.kind !== 'simulated';
   }
 
-  /** Starts a new simulated UNO with this robot at power-on; `saved` is the EEPROM of the previous one. */
-  async simulate(saved?: Uint8Array): Promise<void> {
+  /** Powers on a new simulated UNO with the page's robot; `eeprom` is that of the previous UNO. */
+  async simulate(eeprom?: Uint8Array): Promise<void> {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
-    const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, saved);
+    const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, eeprom);
     for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
     await this.attach(new UnoLink(board, pins, { onFrame: (widths) => this.handleWidths(widths), onPulse: (...pulse) => this.listener.onPulse(...pulse) }));
     this.simulated?.board.setSupply(this.volts);
   }
 
   /**
-   * Connects a board that the user has picked and identifies it; returns true if it is still connected. Throws an
-   * error for the user.
+   * Connects to a board that the user has picked, and identifies it; returns true if it is connected afterwards. Throws
+   * an error with a message for the user.
    */
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
@@ -276,11 +276,11 @@ export class Session {
     link.onReach = (isInReach) => void this.handleReach(link, isInReach);
     await this.attach(link);
     this.listener.onTrouble('port', null);
-    // Opening a port on USB has reset the board. Bytes sent before its banner would go to the boot loader.
+    // Opening a USB port has reset the board. Bytes sent before its banner would go to the boot loader.
     const isRadio = link.kind === 'radio';
     const hasSentBanner = !isRadio && (await this.waitForBanner());
     for (let n = 0; !hasSentBanner && this.banner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
-      if (this.link === link && (await this.checkAnswer())) this.state.banner.value = 'unknown';
+      if (this.link === link && (await this.answersStatus())) this.state.banner.value = 'unknown';
     }
     if (this.link !== link) return false;
     if (this.banner) await this.watch();
@@ -295,12 +295,12 @@ export class Session {
   }
 
   /**
-   * Reports that a radio has lost its board, or continues once it is in reach again. A robot that walked has stopped
-   * by itself meanwhile.
+   * Reports that a radio has lost its board, or continues once the board is in reach again. A robot that was walking
+   * has stopped by itself meanwhile.
    */
   private async handleReach(link: Link, isInReach: boolean): Promise<void> {
     if (this.link !== link) return;
-    this.deadman.letGo();
+    this.deadman.stopRepeating();
     this.state.isSilent.value = !isInReach;
     const message = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
     this.listener.onTrouble('port', isInReach ? null : message);
@@ -315,12 +315,12 @@ export class Session {
 
   /** Waits for the banner of a restarted board; returns true if it came in time. */
   async waitForBanner(): Promise<boolean> {
-    const bannerArrival = new Promise<boolean>((resolve) => (this.resolveBanner = () => resolve(true)));
-    return Promise.race([bannerArrival, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
+    const bannerPromise = new Promise<boolean>((resolve) => (this.resolveBanner = () => resolve(true)));
+    return Promise.race([bannerPromise, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
   }
 
-  /** Resolves to true if this firmware answers `status`: not every port resets its board, so there may be no banner. */
-  private async checkAnswer(): Promise<boolean> {
+  /** Resolves to true if this firmware answers `status`; not every port resets its board and so brings a banner. */
+  private async answersStatus(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWER_TIMEOUT_MS).catch(() => null);
     return answer?.ok ?? false;
   }
@@ -341,7 +341,7 @@ export class Session {
     this.listener.onTrouble('board', message);
   }
 
-  /** Makes a board send its poses. */
+  /** Makes the board report its poses. */
   private async watch(): Promise<void> {
     this.isWatching = true;
     await this.ask(`${WORDS.watch} ${WATCH_FRAMES[this.link.kind]}`);
@@ -361,7 +361,7 @@ export class Session {
     return this.isReal && this.makesWalk(this.gait);
   }
 
-  /** True while a routine is under way; a board may have routines that the page's robot does not have. */
+  /** True while a routine runs; a real board may have routines that the page's robot lacks. */
   private get isRoutineRunning(): boolean {
     return this.makesWalk(this.gait) && !this.description.gaits.some(({ command }) => command === this.gait);
   }
@@ -369,26 +369,26 @@ export class Session {
   /** True if a line makes the robot walk. */
   private makesWalk(line: string): boolean {
     const [word] = line.split(' ');
-    // A board with another robot may have gaits that this robot lacks. A count may follow the gait's name.
+    // A board with another robot may have gaits that the page's robot lacks. A count may follow the gait's name.
     const knownGait = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
     return knownGait ? knownGait.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
   }
 
-  /** Restores the robot's own `deadman` if the robot neither walks nor is about to walk. */
+  /** Restores the robot's own `deadman` setting if the robot neither walks nor is about to walk. */
   private restoreDeadmanIfIdle(): void {
-    if (this.pendingDrives === 0 && !this.isBoardWalking) this.deadman.end();
+    if (this.pendingDriveCount === 0 && !this.isBoardWalking) this.deadman.restore();
   }
 
-  /** Stops a robot that may be out of sight; if `stop` does not arrive, `deadman` stops it. */
-  letGo(): void {
+  /** Stops a board that walks while the user may not see it; if `stop` does not arrive, `deadman` stops it. */
+  stopIfWalking(): void {
     if (!this.isBoardWalking) return;
-    this.deadman.letGo();
+    this.deadman.stopRepeating();
     void this.ask(WORDS.stop);
   }
 
   /**
-   * Stops a board that is about to be disconnected; returns true if the board answers, or if no real robot is known
-   * to be there.
+   * Stops a board that is about to be disconnected; returns true if the board answers, or if no real board with this
+   * firmware is connected.
    */
   async stop(): Promise<boolean> {
     if (!this.isReal || !this.banner) return true;
@@ -398,12 +398,12 @@ export class Session {
   }
 
   private async attach(link: Link): Promise<void> {
-    this.dialogue?.end();
+    this.dialogue?.close();
     await this.link?.close();
     batch(() => {
       this.state.link.value = link;
       this.state.banner.value = undefined;
-      // A radio that was out of reach has nothing to do with the new link.
+      // The silence of an earlier radio that was out of reach says nothing about the new link.
       this.state.isSilent.value = false;
       this.isWatching = false;
       this.mayAsk = false;
@@ -454,14 +454,14 @@ export class Session {
     this.setGait('stand');
     this.setPace(FULL_PACE);
     this.isWatching = false;
-    this.deadman.forget();
+    this.deadman.reset();
     this.listener.onTrouble('board', null);
     this.state.banner.value = parseBanner(line) ?? 'unknown';
     this.resolveBanner();
     // A byte would cancel `boot`.
     this.mayAsk = false;
     void this.link.wait(BOOT_TIMEOUT_MS).then(() => {
-      // The board may have restarted meanwhile, or the boot loader may use the line.
+      // The board may have restarted meanwhile, or the boot loader may be using the line.
       if (this.state.bannerCount.value !== bannerNumber || dialogue.isClosed) return;
       this.mayAsk = true;
       if (this.isReal && !this.isWatching) void this.watch();
@@ -469,7 +469,7 @@ export class Session {
   }
 
   private setPace(percent: number): void {
-    // A cycle whose pace changes is not measured.
+    // A cycle in which the pace changes cannot be measured.
     if (percent !== this.pace) this.walkedPath.clear();
     this.state.pace.value = percent;
   }
@@ -480,38 +480,38 @@ export class Session {
     this.walkedPath.clear();
   }
 
-  /** Sends a line and returns its answer. Shows an error, unless the line is quiet, and returns null. */
+  /** Sends a line and returns its answer, or null after an error, which is shown unless the line is quiet. */
   async ask(line: string, isQuiet = false, timeoutMs?: number): Promise<Answer | null> {
     if (!isQuiet) this.mayAsk = true;
     const { deadman } = this;
     const command = line.trim().toLowerCase();
     if (command === WORDS.stop) this.stopCount += 1;
     const isDrive = this.isReal && this.makesWalk(command);
-    if (isDrive) this.pendingDrives += 1;
+    if (isDrive) this.pendingDriveCount += 1;
     try {
       if (isDrive) {
         const { stopCount } = this;
-        const isConfirmed = await deadman.begin();
-        // The robot was stopped meanwhile.
+        const isConfirmed = await deadman.engage();
+        // The robot was told to stop meanwhile.
         if (stopCount !== this.stopCount) return null;
         if (!isConfirmed) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
       }
       // `cal` must print and `save` must store the robot's own setting, not the page's.
       const needsOwnDeadman = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
-      if (needsOwnDeadman) deadman.end();
+      if (needsOwnDeadman) deadman.restore();
       const pendingAnswer = this.dialogue.ask(line, isQuiet, timeoutMs);
-      if (needsOwnDeadman && this.isBoardWalking) void deadman.begin();
+      if (needsOwnDeadman && this.isBoardWalking) void deadman.engage();
       const answer = await pendingAnswer;
       if (!isQuiet) this.listener.onTrouble('line', null);
       deadman.noteLine(command, answer.ok);
       return answer;
     } catch (error) {
-      // A quiet line is sent again; until then the page shows that the robot is silent.
+      // A quiet line is sent again later; until then the page shows that the robot is silent.
       if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.onTrouble('line', `${messageOf(error)}.`);
       return null;
     } finally {
       if (isDrive) {
-        this.pendingDrives -= 1;
+        this.pendingDriveCount -= 1;
         this.restoreDeadmanIfIdle();
       }
     }
@@ -523,35 +523,35 @@ export class Session {
     if (answer) this.state.refusal.value = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
-  /** Asks for the robot's state; null without an answer. */
+  /** Asks for the robot's status; null without an answer. */
   async status(): Promise<Status | null> {
     const answer = await this.ask(WORDS.status, true, STATUS_TIMEOUT_MS);
     return answer && parseStatus(answer.text);
   }
 
-  /** Handles the robot's state as soon as its line is read: later it could overwrite a newer state. */
+  /** Handles a status as soon as its line is received: later it could overwrite a newer state. */
   private handleStatus(status: Status): void {
     if (status.pace !== null) this.setPace(status.pace);
     this.listener.onTrouble('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
     const gait = status.gait.replaceAll('-', ' ');
     // `center` is a pose for the robot, and a routine that rests is still under way.
-    const isKnown = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === null);
+    const isSameActivity = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === null);
     // The page has missed the start of this activity, for example because its link was cut.
-    if (gait !== this.gait && !isKnown) this.setGait(gait);
+    if (gait !== this.gait && !isSameActivity) this.setGait(gait);
     this.state.status.value = status;
   }
 
   /** Presses the reset button of the board. */
   async reset(): Promise<void> {
     this.dialogue.dropQuestions();
-    this.deadman.forget();
+    this.deadman.reset();
     this.setGait('');
     await this.link.reset();
   }
 
   /**
-   * Writes firmware and robot, or only the robot behind the board's firmware, and starts the board. Throws an error for
-   * the user that says what the board contains then.
+   * Writes firmware and robot, or only the robot after the board's firmware, and starts the board. Throws an error
+   * whose message tells the user what the board contains then.
    */
   async flash(bytes: Uint8Array, isRobotAlone: boolean, progress: Progress): Promise<void> {
     const { link } = this;
@@ -566,16 +566,16 @@ export class Session {
     });
   }
 
-  /** Gives the line to the boot loader until `action` has ended. Throws an error with a message for the user. */
+  /** Runs `action` with the boot loader, which has the line meanwhile. Throws an error with a message for the user. */
   private async withBootLoader<T>(link: Link, action: (board: Awaited<ReturnType<typeof loadBoard>>, line: BootLine) => Promise<T>): Promise<T> {
     const board = await loadBoard();
     if (this.link !== link) throw new Error(GONE_MESSAGE);
-    this.dialogue.end();
+    this.dialogue.close();
     const line = new BootLine(link);
     try {
       return await action(board, line);
     } finally {
-      await line.end();
+      await line.restoreBaud();
       if (this.link === link) {
         this.startDialogue();
         this.setGait('');
@@ -584,8 +584,8 @@ export class Session {
   }
 
   /**
-   * Waits for the banner of a board that was just written; `hash` is the expected robot's, or null. Returns what is
-   * wrong, or null.
+   * Waits for the banner of a board that was just written, and compares the robot's hash with `hash` unless that is
+   * null. Returns the problem as the end of a sentence, or null.
    */
   async checkWrittenBoard(hash: string | null): Promise<string | null> {
     const { link } = this;
@@ -600,16 +600,16 @@ export class Session {
     return hash !== null && boardHash !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
   }
 
-  /** The link, if it leads to a simulated board. */
+  /** The link if it leads to a simulated board; null otherwise. */
   private get simulated(): UnoLink | null {
     return this.link instanceof UnoLink ? this.link : null;
   }
 
-  /** Runs the simulation. */
+  /** Advances the simulation; does nothing with a real board. */
   advance(ms: number): void {
     try {
       const { simulated } = this;
-      // In short steps, so that each line of the robot gets its own time, even if a slow machine has much to catch up.
+      // The steps are short, so that each line of the robot gets its own time, even if a slow machine has to catch up.
       for (let remainingMs = simulated ? ms : 0; remainingMs > 0; remainingMs -= CLOCK_STEP_MS) {
         const stepMs = Math.min(remainingMs, CLOCK_STEP_MS);
         this.clock += stepMs / 1000;
@@ -640,19 +640,20 @@ export class Session {
   }
 
   /**
-   * Returns the displacement in the last complete cycle of the gait; null without a moving gait or a complete cycle.
+   * Returns the displacement in the last complete cycle of the gait; null without a gait that moves or a complete
+   * cycle.
    */
   measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
     return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.pace) : null;
   }
 
-  /** The predictions that came with the page; null unless the robot, its floor and its servos are those of the file. */
+  /** The predictions that come with the page; null unless the robot, its floor and its servos are those of the file. */
   get filePredictions(): Predictions | null {
     return this.toml === this.original && this.state.floor.value === null && this.servos === 'own' ? this.predictions : null;
   }
 
-  /** Puts the robot back to its start on the floor. */
+  /** Puts the robot back to its starting place on the floor. */
   returnToStart(): void {
     this.robot.restart();
     this.walkedPath.clear();
@@ -670,6 +671,7 @@ export class Session {
     this.storeChanges();
   }
 
+  /** Sets the servo model, by its name in the description. */
   setServos(name: string): void {
     this.state.servos.value = name;
     this.robot.setServos(name);
@@ -684,6 +686,7 @@ export class Session {
     if (input) this.simulated?.board.setContact(input[1], isClosed);
   }
 
+  /** Sets the supply voltage of the simulated board. */
   setSupply(volts: number): void {
     this.volts = volts;
     this.simulated?.board.setSupply(volts);

@@ -6,7 +6,7 @@ import { isRefused, type OnFloor } from '../robot';
 
 let robot: Robot;
 
-/** A gait that the search found, with its trial on the page's floor with the page's servos. */
+/** A gait that the search has found, with its trial on the page's floor with the page's servos. */
 export interface BestGait extends Found {
   trial: Trial;
 }
@@ -31,8 +31,8 @@ const api = {
   tryNext: () => robot.fasterStep(),
 
   /**
-   * Returns the best gait so far, compared with the gait to beat on a number of random robots; null until a gait
-   * stays within the limits.
+   * Returns the best gait so far, compared with the gait to beat on `robotCount` random robots; null until a gait stays
+   * within the limits.
    */
   bestSoFar(robotCount: number): BestGait | null {
     const bestGait = robot.fasterFound(robotCount);

@@ -1,5 +1,5 @@
-// A search for a gait that walks faster than the edited one, in a worker of its own, which is terminated with the
-// search.
+// A search for a gait that is faster than the edited one. It runs in a worker of its own, which is terminated at the
+// end of the search.
 import type { SearchTask } from '../../generated/tune';
 import { Helper } from '../helper';
 import type { OnFloor, Trial } from '../robot';
@@ -8,20 +8,20 @@ import type { BestGait, FasterWorkerApi } from './faster-worker';
 
 export type { BestGait };
 
-/** Number of gaits between two reports of the best so far: one population of the search. */
+/** Number of gaits between two reports of the best gait so far: one population of the search. */
 const GAITS_PER_REPORT = 20;
 /**
- * Number of random robots for a report while the search runs, and for the final comparison, the latter as in
- * `lizard tune`.
+ * Number of random robots on which gaits are compared, for a report during the search and for the final one, there as
+ * in `lizard tune`.
  */
 const ROBOT_COUNT = { progress: 20, final: 200 };
 
-/** A report of the search. */
+/** A report of the search, which tries `all` gaits, of which `done` are tried; `rate` is the servos' limit, deg/s. */
 export type SearchReport =
   | { kind: 'start'; all: number; rate: number; referenceTrial: Trial }
   | { kind: 'progress'; done: number }
   | { kind: 'best'; best: BestGait }
-  /** The last report: the best of all gaits that were tried, if any was valid. */
+  /** The last report: the best of all tried gaits, or null if none was valid. */
   | { kind: 'end'; best: BestGait | null; done: number }
   | { kind: 'end'; refused: string };
 
@@ -29,8 +29,8 @@ export class FasterSearch {
   private readonly helper = new Helper<FasterWorkerApi>(new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' }));
   private isStopped = false;
 
-  /** Starts the search with the WebAssembly module; `onReport` gets every report, including the last. */
-  constructor(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, onReport: (searchReport: SearchReport) => void) {
+  /** Starts the search with the WebAssembly module; `onReport` receives every report, including the last. */
+  constructor(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, onReport: (report: SearchReport) => void) {
     this.search(module, question, onReport)
       .catch((error: unknown): SearchReport => ({ kind: 'end', refused: messageOf(error) }))
       .then((lastReport) => {
@@ -39,30 +39,30 @@ export class FasterSearch {
       });
   }
 
-  /** Ends the search after the current gait; the last report has the best gait so far. */
+  /** Ends the search after the current gait; the last report then has the best gait so far. */
   stop(): void {
     this.isStopped = true;
   }
 
-  /** Ends the search without a last report. */
+  /** Ends the search at once, without a last report. */
   cancel(): void {
     this.helper.terminate();
   }
 
-  private async search(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, report: (report: SearchReport) => void): Promise<SearchReport> {
+  private async search(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, onReport: (report: SearchReport) => void): Promise<SearchReport> {
     const { helper } = this;
     const loadedModule = await module;
     const start = await helper.call((search) => search.begin(loadedModule, question));
-    report({ kind: 'start', ...start });
-    let [shownScore, done] = [-Infinity, 0];
+    onReport({ kind: 'start', ...start });
+    let [reportedScore, done] = [-Infinity, 0];
     while (done < start.all && !this.isStopped) {
       const progress = await helper.call((search) => search.tryNext());
       done = progress.done;
-      report({ kind: 'progress', done });
-      if (done % GAITS_PER_REPORT !== 0 || done === start.all || progress.best === null || progress.best <= shownScore) continue;
-      shownScore = progress.best;
+      onReport({ kind: 'progress', done });
+      if (done % GAITS_PER_REPORT !== 0 || done === start.all || progress.best === null || progress.best <= reportedScore) continue;
+      reportedScore = progress.best;
       const best = await helper.call((search) => search.bestSoFar(ROBOT_COUNT.progress));
-      if (best) report({ kind: 'best', best });
+      if (best) onReport({ kind: 'best', best });
     }
     const best = await helper.call((search) => search.bestSoFar(ROBOT_COUNT.final));
     return { kind: 'end', best, done };

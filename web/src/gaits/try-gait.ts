@@ -1,18 +1,18 @@
-// Puts an edited gait into the page's robot, and starts it in the simulation.
+// Puts an edited gait into the page's robot, and starts the gait in the simulation.
 import type { EditedGait, Refused } from '../robot';
 import type { Session } from '../session';
 
-/** Time from a restart until the robot stands, ms of the simulation. */
+/** Simulated time from a restart until the robot stands, ms. */
 const WAKE_MS = 2500;
 
-/** Puts the gait into the session's robot. A board on USB gets the gait only when the robot is written to it. */
+/** Puts the gait into the session's robot. A real board gets the gait only when the robot is written to it. */
 export async function applyGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   return session.change(session.robot.putGait(session.toml, gait));
 }
 
 /**
- * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refused for a board on
- * USB, which has only the gaits that are written on it.
+ * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refused for a real board,
+ * which has only the gaits that were written to it.
  */
 export async function tryGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   const refusal = await restartWithGait(session, gait);
@@ -21,8 +21,8 @@ export async function tryGait(session: Session, gait: EditedGait): Promise<Refus
 }
 
 /**
- * Puts the gait into the session's robot, restarts the simulated board and waits until it stands. Refused for a board
- * on USB.
+ * Puts the gait into the session's robot, restarts the simulated board and waits until the robot stands. Refused for a
+ * real board.
  */
 export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   if (session.isReal) {

@@ -1,5 +1,5 @@
-// The link to a board with a Bluetooth LE module on its serial line, by Web Bluetooth. A module passes bytes on in
-// packets and cannot reset a board. If it is out of reach for a while, the link tries to reach it again.
+// The link to a board with a Bluetooth LE module on its serial line, by Web Bluetooth. The module passes bytes on in
+// packets and cannot reset the board. If the module gets out of reach, the link tries to reach it again.
 import { sleep, type Link } from './link';
 
 /** The serial services of the HM-10 and of Nordic's modules, each with its characteristics for writing and reading. */
@@ -13,9 +13,9 @@ const SERIAL_SERVICES = [
 ];
 /** The prefixes of the names of modules that do not advertise their service. */
 const NAME_PREFIXES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
-/** The largest number of bytes in a packet. */
-const PACKET_BYTES = 20;
-/** Time from one attempt to reach a module to the next, ms. */
+/** Largest size of a packet, bytes. */
+const MAX_PACKET_BYTES = 20;
+/** Time between two attempts to reach a module, ms. */
 const RETRY_MS = 500;
 
 /** Web Bluetooth; undefined in a browser without it. */
@@ -45,7 +45,7 @@ export class BluetoothLink implements Link {
   private pendingWrites: Promise<void> = Promise.resolve();
   private isClosing = false;
 
-  /** The module's services; every Bluetooth LE device that a user has picked has them. */
+  /** The module's GATT server; every Bluetooth LE device that a user has picked has one. */
   private readonly gatt: BluetoothRemoteGATTServer;
 
   private constructor(private readonly device: BluetoothDevice) {
@@ -67,8 +67,8 @@ export class BluetoothLink implements Link {
     try {
       device = await bluetooth.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
     } catch (error) {
-      // The error of a chooser closed without a choice. Without the system's permission a browser gives the same
-      // error with another message.
+      // A chooser closed without a choice and a lack of the system's permission give the same error with different
+      // messages.
       const isNotFound = error instanceof DOMException && error.name === 'NotFoundError';
       if (isNotFound && !isAvailable) throw new Error('This machine has no Bluetooth, or it is switched off.');
       if (isNotFound && !/permission|denied/i.test(error.message)) return null;
@@ -98,7 +98,7 @@ export class BluetoothLink implements Link {
   }
 
   private async reconnect(): Promise<void> {
-    // A module that was never reached is reported by `open`.
+    // If the module was never reached, `open` reports it.
     if (this.isClosing || !this.writeCharacteristic) return;
     this.writeCharacteristic = null;
     this.onReach(false);
@@ -114,10 +114,10 @@ export class BluetoothLink implements Link {
   }
 
   private async send(bytes: Uint8Array): Promise<void> {
-    for (let start = 0; start < bytes.length; start += PACKET_BYTES) {
+    for (let start = 0; start < bytes.length; start += MAX_PACKET_BYTES) {
       const characteristic = this.writeCharacteristic;
       if (!characteristic) throw new Error(`the ${this.name} is out of reach`);
-      const packet = bytes.slice(start, start + PACKET_BYTES);
+      const packet = bytes.slice(start, start + MAX_PACKET_BYTES);
       await (characteristic.properties.writeWithoutResponse ? characteristic.writeValueWithoutResponse(packet) : characteristic.writeValueWithResponse(packet));
     }
   }
@@ -127,7 +127,7 @@ export class BluetoothLink implements Link {
 
   async close(): Promise<void> {
     this.isClosing = true;
-    // The bytes of earlier writes go out first, unless that takes too long.
+    // The bytes of earlier writes are sent first, unless that takes too long.
     await Promise.race([this.pendingWrites.catch(() => {}), sleep(RETRY_MS)]);
     this.gatt.disconnect();
   }

@@ -1,9 +1,10 @@
-// The serial line to a board's boot loader. Its protocol is Rust, in the WebAssembly module for boards.
+// The serial line to a board's boot loader. The protocol is implemented in Rust, in the WebAssembly module for boards.
 import type { Line } from '../../generated/board';
 import { BAUD, type Link } from './link';
 
 export class BootLine implements Line {
   private receivedBytes: number[] = [];
+  /** Called when bytes have arrived. */
   private onArrival: () => void = () => {};
   private baud = BAUD;
 
@@ -23,21 +24,21 @@ export class BootLine implements Line {
     return this.link.write(bytes);
   }
 
-  async read(count: number, ms: number): Promise<Uint8Array> {
+  async read(count: number, timeoutMs: number): Promise<Uint8Array> {
     if (this.receivedBytes.length < count) {
       const completion = new Promise<void>((resolve) => (this.onArrival = () => this.receivedBytes.length >= count && resolve()));
-      await Promise.race([this.link.wait(ms), completion]);
+      await Promise.race([this.link.wait(timeoutMs), completion]);
     }
     return Uint8Array.from(this.receivedBytes.splice(0, count));
   }
 
-  async discard(ms: number): Promise<void> {
-    await this.link.wait(ms);
+  async discard(durationMs: number): Promise<void> {
+    await this.link.wait(durationMs);
     this.receivedBytes = [];
   }
 
-  /** Returns the line to the firmware's baud rate, which resets the board if the boot loader has another one. */
-  async end(): Promise<void> {
+  /** Restores the firmware's baud rate, which resets the board if the boot loader has another rate. */
+  async restoreBaud(): Promise<void> {
     if (this.baud !== BAUD) await this.link.reset(BAUD).catch(() => {});
   }
 }

@@ -1,29 +1,29 @@
-// The console's rule: every line gets exactly one answer, in order, `ok ...` or `err ...`; lines that begin
-// with # come before the answer, or unasked. One line is sent at a time, except `stop`: it is sent at once, and
-// repeated until the robot answers it, since a link may lose a line or its answer.
+// The dialogue with the robot's console. Every line gets exactly one answer, in order, `ok ...` or `err ...`; lines
+// that begin with # come before the answer, or unsolicited. One line is sent at a time, except `stop`: it is sent at
+// once and repeated until the robot answers it, since a link may lose a line or its answer.
 import { WORDS } from '../words';
 import type { Link } from './link';
 
 /** The beginning of the firmware's banner, its first line after a reset. */
 export const BANNER_PREFIX = '# lizard ';
-/** The largest length of a line of the robot; longer lines are noise and are cut. */
+/** Largest length of a line from the robot, characters; a longer line is noise and is truncated. */
 const MAX_LINE_LENGTH = 500;
-/** Time within which an answer must come, ms. */
+/** Time within which an answer must arrive, ms. */
 const TIMEOUT_MS = 3000;
-/** Time from one `stop` to its repetition while none is answered, ms. */
+/** Interval at which an unanswered `stop` is repeated, ms. */
 const STOP_INTERVAL_MS = 250;
-/** Time after the first answer to a repeated `stop` within which the answers to its repetitions have come, ms. */
+/** Time after the first answer to a repeated `stop` within which the answers to the repetitions arrive, ms. */
 const LATE_STOP_ANSWERS_MS = 500;
-/** Time without an expected answer after which a robot counts as silent, ms. */
+/** Time without an expected answer after which the robot counts as silent, ms. */
 export const SILENCE_MS = 800;
 /** The texts that a Bluetooth module inserts into the line when its link begins and ends. */
 const MODULE_TEXTS = /OK\+(CONN|LOST)/g;
 /**
  * The refusals of `stop` by a board that sends no pulses because it rests or has no robot in its flash. The whole line
- * must match: a line that a radio has cut off may be the beginning of an older answer.
+ * must match: a line that a radio has truncated may be the beginning of an earlier answer.
  */
 const STOP_REFUSAL = /^err (7 servos are resting, send stand first|10 no robot in the flash)$/;
-/** A # line with a setting, which `cal` prints before its answer. */
+/** A # line with a setting, as the robot sends it before the answer to `cal`. */
 const SETTING_LINE = /^# (A[1-4]|boot|deadman) /;
 
 export interface Answer {
@@ -35,19 +35,19 @@ export interface Answer {
 }
 
 export interface DialogueListener {
-  /** Called with each line that is sent. */
+  /** Called with each sent line that is to be shown. */
   onSent(line: string): void;
-  /** Called with each line that is received and is to be shown. */
+  /** Called with each received line that is to be shown. */
   onShownLine(line: string): void;
-  /** Called with each line that the robot sends, also with lines that are not shown. */
+  /** Called with each received line, also if it is not to be shown. */
   onAnyLine(line: string): void;
   /** Called when the robot has left a line unanswered for `SILENCE_MS`, and when it answers again. */
   onSilent(isSilent: boolean): void;
-  /** Called when `stop` begins to be sent, and when the robot has answered it. */
+  /** Called when `stop` is sent for the first time, and when the robot has answered it. */
   onStopping(isStopping: boolean): void;
 }
 
-/** Error of a question that was dropped before its answer. */
+/** Thrown for a question that was dropped before its answer arrived. */
 export class DroppedQuestion extends Error {}
 
 interface PromiseCallbacks {
@@ -61,7 +61,7 @@ interface Question extends PromiseCallbacks {
   timeoutMs: number;
 }
 
-/** A `stop` that has no answer yet: the callbacks of its callers, and how often it was sent. */
+/** A `stop` that has no answer yet: the callbacks of its callers, and the number of times that it was sent. */
 interface Stop {
   callers: PromiseCallbacks[];
   sendCount: number;
@@ -79,21 +79,21 @@ function isAnswerTo(answer: string, line: string): boolean {
 export class Dialogue {
   private readonly encoder = new TextEncoder();
   private readonly decoder = new TextDecoder('latin1');
-  /** The part of a line that has arrived so far. */
-  private unfinishedLine = '';
+  /** The received part of the line that is not complete yet. */
+  private partialLine = '';
   private readonly waitingQuestions: Question[] = [];
   private pendingQuestion: Question | null = null;
   private pendingStop: Stop | null = null;
-  /** Pending while answers to repetitions of `stop` may still come; no other line is sent meanwhile. */
+  /** Pending while answers to repetitions of `stop` may still arrive; no other line is sent meanwhile. */
   private lateAnswers: Promise<void> | null = null;
   private isSilent = false;
-  /** The line that is sent at intervals, in addition to all others; null for none. */
-  private repeated: { line: string } | null = null;
-  /** The expected answer to the repeated line. */
-  private repeatedAnswer = '';
+  /** The line that is sent at intervals in addition to all others; null for none. */
+  private keepAliveLine: { line: string } | null = null;
+  /** The expected answer to the line that is sent at intervals; it is not shown. */
+  private keepAliveAnswer = '';
   /** The # lines since the last question was sent. */
   private notes: string[] = [];
-  /** True once the dialogue has ended: something else uses the link, such as the boot loader. */
+  /** True once the dialogue is closed: something else uses the link, such as the boot loader. */
   isClosed = false;
 
   constructor(
@@ -105,7 +105,7 @@ export class Dialogue {
 
   /**
    * Sends a line and waits at most `timeoutMs` for its answer. `stop` is sent at once, and its answer is awaited
-   * without a limit. A quiet line is not shown in the console.
+   * without a time limit. A quiet line and its answer are not shown.
    */
   ask(line: string, isQuiet = false, timeoutMs = TIMEOUT_MS): Promise<Answer> {
     return new Promise((resolve, reject) => {
@@ -120,11 +120,11 @@ export class Dialogue {
   dropQuestions(): void {
     const dropped = [...(this.pendingQuestion ? [this.pendingQuestion] : []), ...(this.pendingStop?.callers ?? [])];
     this.pendingQuestion = null;
-    this.unfinishedLine = '';
+    this.partialLine = '';
     this.notes = [];
     if (this.pendingStop) this.listener.onStopping(false);
     this.pendingStop = null;
-    this.setHeard();
+    this.setSilent(false);
     for (const { reject } of dropped) reject(new DroppedQuestion());
     this.dropWaitingQuestions();
   }
@@ -133,7 +133,7 @@ export class Dialogue {
     for (const { reject } of this.waitingQuestions.splice(0)) reject(new DroppedQuestion());
   }
 
-  /** Stops the robot. Waiting lines are dropped, since they could make it walk on. */
+  /** Stops the robot, and drops the waiting lines, which could make it walk on. */
   private halt(callbacks: PromiseCallbacks): void {
     this.dropWaitingQuestions();
     if (this.pendingStop) {
@@ -144,29 +144,29 @@ export class Dialogue {
     this.listener.onSent(WORDS.stop);
     this.listener.onStopping(true);
     void this.repeatStop(stop);
-    void this.link.wait(SILENCE_MS).then(() => this.pendingStop === stop && this.setHeard(false));
+    void this.link.wait(SILENCE_MS).then(() => this.pendingStop === stop && this.setSilent(true));
   }
 
   private async repeatStop(stop: Stop): Promise<void> {
     while (this.pendingStop === stop) {
       stop.sendCount += 1;
-      // The link itself reports a port that accepts no more bytes.
+      // The link itself reports a lost port.
       this.link.write(this.encoder.encode(`${WORDS.stop}\n`)).catch(() => {});
       await this.link.wait(STOP_INTERVAL_MS);
     }
   }
 
   /**
-   * Sends a line every `intervalMs` ms, in addition to all others and without waiting for its answer; null ends the
+   * Sends a line every `intervalMs` in addition to all others and without waiting for its answer; null ends the
    * repetition.
    */
   keepAlive(line: string | null, intervalMs = 0): void {
-    const repeated = (this.repeated = line === null ? null : { line });
-    if (!repeated) return;
-    this.repeatedAnswer = `ok ${repeated.line}`;
+    const keepAliveLine = (this.keepAliveLine = line === null ? null : { line });
+    if (!keepAliveLine) return;
+    this.keepAliveAnswer = `ok ${keepAliveLine.line}`;
     const repeatLine = async () => {
-      while (this.repeated === repeated && !this.isClosed) {
-        this.link.write(this.encoder.encode(`${repeated.line}\n`)).catch(() => {});
+      while (this.keepAliveLine === keepAliveLine && !this.isClosed) {
+        this.link.write(this.encoder.encode(`${keepAliveLine.line}\n`)).catch(() => {});
         await this.link.wait(intervalMs);
       }
     };
@@ -176,8 +176,8 @@ export class Dialogue {
   private finishStop(stop: Stop, answer: Answer): void {
     this.pendingStop = null;
     this.listener.onStopping(false);
-    this.setHeard();
-    // Answers come in order, so the answer to the line sent before `stop` has been lost.
+    this.setSilent(false);
+    // Answers arrive in order, so the answer to the line sent before `stop` was lost.
     const { pendingQuestion: question } = this;
     this.pendingQuestion = null;
     question?.reject(new DroppedQuestion());
@@ -190,14 +190,14 @@ export class Dialogue {
     void this.sendNext();
   }
 
-  private setHeard(isHeard = true): void {
-    if (this.isSilent === !isHeard) return;
-    this.isSilent = !isHeard;
-    this.listener.onSilent(!isHeard);
+  private setSilent(isSilent: boolean): void {
+    if (this.isSilent === isSilent) return;
+    this.isSilent = isSilent;
+    this.listener.onSilent(isSilent);
   }
 
-  /** Ends the dialogue; the link may then have another listener. */
-  end(): void {
+  /** Closes the dialogue; something else may use the link then. */
+  close(): void {
     this.isClosed = true;
     this.dropQuestions();
   }
@@ -211,7 +211,7 @@ export class Dialogue {
     if (!question.isQuiet) this.listener.onSent(question.line);
     try {
       await this.link.write(this.encoder.encode(`${question.line}\n`));
-      void this.link.wait(SILENCE_MS).then(() => this.pendingQuestion === question && this.setHeard(false));
+      void this.link.wait(SILENCE_MS).then(() => this.pendingQuestion === question && this.setSilent(true));
       await this.link.wait(question.timeoutMs);
       if (this.pendingQuestion === question) throw new Error(`no answer to "${question.line}"`);
     } catch (error) {
@@ -224,21 +224,21 @@ export class Dialogue {
 
   private receiveBytes(bytes: Uint8Array): void {
     if (this.isClosed) return;
-    this.unfinishedLine += this.decoder.decode(bytes);
-    const lines = this.unfinishedLine.split(/\r?\n/);
-    this.unfinishedLine = (lines.pop() ?? '').slice(-MAX_LINE_LENGTH);
+    this.partialLine += this.decoder.decode(bytes);
+    const lines = this.partialLine.split(/\r?\n/);
+    this.partialLine = (lines.pop() ?? '').slice(-MAX_LINE_LENGTH);
     for (const line of lines) if (line !== '') this.receiveLine(line.slice(-MAX_LINE_LENGTH));
   }
 
   private receiveLine(received: string): void {
-    // A reset cuts off the line that the board is sending, and the banner follows on the same line.
+    // A reset truncates the line that the board is sending, and the banner follows on the same line.
     const line = received.slice(Math.max(0, received.indexOf(BANNER_PREFIX))).replace(MODULE_TEXTS, '');
     if (line === '') return;
     this.listener.onAnyLine(line);
     const { pendingQuestion: question, pendingStop: stop } = this;
     const isAnswer = /^(ok|err)\b/.test(line);
     if (!isAnswer) {
-      // The settings that the page asks for by itself are not shown.
+      // The settings that the page itself has asked for are not shown.
       if (!(question?.isQuiet && firstWordOf(question.line) === WORDS.cal && SETTING_LINE.test(line))) this.listener.onShownLine(line);
       this.notes.push(line);
       return;
@@ -250,11 +250,11 @@ export class Dialogue {
       return;
     }
     const isExpected = question !== null && isAnswerTo(line, question.line);
-    const isQuiet = isExpected ? question.isQuiet : line === this.repeatedAnswer;
+    const isQuiet = isExpected ? question.isQuiet : line === this.keepAliveAnswer;
     if (!isQuiet) this.listener.onShownLine(line);
     if (!isExpected) return;
     this.pendingQuestion = null;
-    this.setHeard();
+    this.setSilent(false);
     const { notes } = this;
     this.notes = [];
     question.resolve({ ok: line.startsWith('ok'), text: line, notes });

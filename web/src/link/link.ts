@@ -2,38 +2,38 @@
 
 /** The baud rate of the firmware, and of every link that is not told another one. */
 export const BAUD = 115_200;
-/** The message when a board was unplugged. */
+/** The error message if the board was unplugged. */
 export const GONE_MESSAGE = 'the board is not connected any more';
 
 export const sleep = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 
 export interface Link {
   /**
-   * By USB a board is reset when its port is opened, and its flash can be written; by radio neither works, and lines
-   * take longer.
+   * The kind of link. Over USB a board is reset when its port is opened, and its flash can be written; over radio
+   * neither works, and lines take longer.
    */
   readonly kind: 'simulated' | 'usb' | 'radio';
   /** The board's name in messages. */
   readonly name: string;
-  /** True if the board's USB chip is also used on the Arduino Nano. */
+  /** True if the board may be an Arduino Nano: its USB chip is used on both. */
   readonly mayBeNano?: boolean;
-  /** Called with the bytes that are received. */
+  /** Called with received bytes. */
   onBytes: (bytes: Uint8Array) => void;
-  /** Called when the board is gone. */
+  /** Called when the board is gone, with the reason as a sentence. */
   onGone?: (reason: string) => void;
-  /** Called when a radio loses contact with its board, and when contact is restored. */
+  /** Called with false when a radio loses contact with its board, and with true when contact is restored. */
   onReach?: (isInReach: boolean) => void;
   /** Sends bytes. */
   write(bytes: Uint8Array): Promise<void>;
-  /** Resets the board, as opening a port does, and sets the speed of a real line. */
+  /** Resets the board, as opening a port does, and sets the baud rate of a real line. */
   reset(baud?: number): Promise<void>;
-  /** Waits in the board's time, which is simulated time for a simulated board. */
+  /** Waits in the board's time, which for a simulated board is simulated time. */
   wait(ms: number): Promise<void>;
   /** Closes the link; nothing is received afterwards. */
   close(): Promise<void>;
 }
 
-/** Timers in simulated time. */
+/** Timers in simulated time; its unit is up to the caller. */
 export class Timers {
   private pendingTimers: { due: number; resolve: () => void }[] = [];
 
@@ -42,11 +42,11 @@ export class Timers {
     return new Promise((resolve) => this.pendingTimers.push({ due, resolve }));
   }
 
-  /** Settles the timers that are due. */
+  /** Resolves the timers that are due at `now`. */
   advanceTo(now: number): void {
     const dueTimers = this.pendingTimers.filter(({ due }) => due <= now);
     if (dueTimers.length === 0) return;
     this.pendingTimers = this.pendingTimers.filter(({ due }) => due > now);
-    for (const { resolve: done } of dueTimers) done();
+    for (const { resolve } of dueTimers) resolve();
   }
 }

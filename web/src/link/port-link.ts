@@ -1,12 +1,12 @@
-// The link to a board by Web Serial, which Chromium browsers and newer Firefox have, over https or on localhost: on
-// USB, or through an HC-05, a Bluetooth module that the system knows as a serial port.
+// The link to a board by Web Serial, over USB or through an HC-05, a Bluetooth module that the system offers as a
+// serial port. Chromium browsers and newer Firefox have Web Serial, over https or on localhost.
 import { messageOf } from '../trouble';
 import { BAUD, GONE_MESSAGE, sleep, type Link } from './link';
 
-/** Bluetooth's serial port profile, which an HC-05 has. */
+/** The UUID of Bluetooth's serial port profile, which an HC-05 has. */
 const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
-/** The USB vendors arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
-const ARDUINO_VENDORS = [0x2341, 0x2a03];
+/** The USB vendor ids of arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
+const ARDUINO_VENDOR_IDS = [0x2341, 0x2a03];
 /** The message for a browser without Web Serial. */
 export const NO_SERIAL_MESSAGE = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
 /** Length of the pulse on the reset line, ms. */
@@ -23,7 +23,7 @@ export class PortLink implements Link {
   private writer: WritableStreamDefaultWriter<Uint8Array> | null = null;
   private isClosing = false;
   private baud = BAUD;
-  /** Settles when nothing is read from the port any more. */
+  /** Settles when reading from the port has ended. */
   private readLoop: Promise<void> = Promise.resolve();
 
   private constructor(private readonly port: SerialPort) {}
@@ -38,7 +38,7 @@ export class PortLink implements Link {
 
   get mayBeNano(): boolean {
     const { usbVendorId } = this.port.getInfo();
-    return usbVendorId !== undefined && !ARDUINO_VENDORS.includes(usbVendorId);
+    return usbVendorId !== undefined && !ARDUINO_VENDOR_IDS.includes(usbVendorId);
   }
 
   /** Opens a port that the user picks, which resets a UNO; null if none is picked. Throws an error for the user. */
@@ -48,7 +48,7 @@ export class PortLink implements Link {
     try {
       port = await navigator.serial.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
     } catch (error) {
-      // The error of a chooser that was closed without a choice.
+      // The user has closed the chooser without a choice.
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
       throw error;
     }
@@ -64,7 +64,7 @@ export class PortLink implements Link {
   private async openPort(): Promise<void> {
     await this.port.open({ baudRate: this.baud, bufferSize: 4096 });
     this.isClosing = false;
-    this.readLoop = this.listen();
+    this.readLoop = this.readUntilClosed();
   }
 
   async write(bytes: Uint8Array): Promise<void> {
@@ -77,7 +77,7 @@ export class PortLink implements Link {
   async reset(baud = this.baud): Promise<void> {
     if (this.kind === 'radio') return;
     if (baud !== this.baud) {
-      // Only opening sets a port's speed.
+      // The baud rate can only be set when the port is opened.
       await this.close();
       this.baud = baud;
       await this.openPort().catch((error: unknown) => {
@@ -100,7 +100,7 @@ export class PortLink implements Link {
     await this.port.close().catch(() => {});
   }
 
-  private async listen(): Promise<void> {
+  private async readUntilClosed(): Promise<void> {
     let reason = 'its port is closed.';
     // A line error (break, framing error) ends a stream, and the port then has a new one; an
     // unplugged board has none.
@@ -115,7 +115,7 @@ export class PortLink implements Link {
           if (value) this.onBytes(value);
         }
       } catch (error) {
-        reason = error instanceof Error ? error.message : String(error);
+        reason = messageOf(error);
       } finally {
         this.reader.releaseLock();
       }

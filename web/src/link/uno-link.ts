@@ -1,18 +1,18 @@
-// The link to a simulated UNO, which runs the image cycle by cycle, and only in `advance`.
+// The link to a simulated UNO, which runs its image cycle by cycle, and only in `advance`.
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY_HZ } from '../uno/board';
 import { FrameCollector } from '../uno/frames';
 import { type Link, Timers } from './link';
 
 const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
-/** Simulated time that the chip runs between two reads of its output, ms. */
+/** Simulated time for which the chip runs between two reads of its output, ms. */
 const SLICE_MS = 2;
 
 /** Callbacks for the servo pulses of the simulated board. */
 export interface UnoEvents {
-  /** Receives a frame: the width of each servo's pulse in cycles, 0 for none, and the cycle at which the first rose. */
+  /** Receives a frame: the pulse width of each servo in cycles, 0 for none, and the cycle of the first rising edge. */
   onFrame(widths: Four<number>, cycle: number): void;
-  /** Receives a pulse: its pin by the Arduino number, the cycle at which it rose, and its width in cycles. */
+  /** Receives a pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
   onPulse(pin: number, rise: number, width: number): void;
 }
 
@@ -24,7 +24,7 @@ export class UnoLink implements Link {
   private readonly frameCollector: FrameCollector;
   /** The bytes that the board has sent in the current slice. */
   private bytesFromBoard: number[] = [];
-  /** Time that the chip still has to run, cycles. */
+  /** Cycles that the chip still has to run; negative if it has run too far. */
   private cyclesToRun = 0;
 
   /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
@@ -41,7 +41,7 @@ export class UnoLink implements Link {
     };
   }
 
-  /** Runs the board for a simulated time, and passes on its bytes and pulses. */
+  /** Runs the board for `ms` of simulated time, and passes on its bytes and pulses. */
   advance(ms: number): void {
     // The chip runs whole cycles only.
     this.cyclesToRun += Math.round(ms * CYCLES_PER_MS);

@@ -251,7 +251,7 @@ export class RobotView {
   }
 }
 
-/** The colours of bought bodies by their kinds; a standoff has the colour of the tubes, and the others that of steel. */
+/** The colours of bought bodies by their kinds; a standoff has that of the tubes, and the others that of steel. */
 const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
   servo: '#4a6fa5',
   board: '#1d7f86',

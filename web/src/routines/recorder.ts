@@ -3,39 +3,40 @@
 import type { Gait } from '../robot';
 import { GAITS, WORDS } from '../words';
 
-/** Shortest pause that becomes a step, s: a thumb that changes direction lets go for a moment. */
-const SHORTEST_PAUSE_S = 0.5;
+/** Shortest pause that becomes a step, s; a thumb that changes direction releases the stick for a moment. */
+const MIN_PAUSE_S = 0.5;
 /** Shortest step, s. */
-const SHORTEST_STEP_S = 0.1;
-/** Largest error, in cycles, of a count since the last phase that the robot reported. */
+const MIN_STEP_S = 0.1;
+/** Largest error, in cycles, of the count since the last reported phase. */
 const COUNT_TOLERANCE_CYCLES = 0.05;
 /**
- * Added before a count is rounded down to whole cycles; below 0.5, because the count includes the move to the first
- * pose with which a gait begins.
+ * Number of cycles added to the count before it is rounded down to whole cycles; below 0.5, because the count includes
+ * the move to the gait's first pose.
  */
 const ROUNDING_OFFSET_CYCLES = 0.4;
-/** The robot's activities between gaits; a routine has only `stand` for them. */
+/** The robot's activities between gaits; a routine has only the step `stand` for them. */
 const PAUSE_ACTIVITIES: string[] = ['', GAITS.stand, WORDS.stop, WORDS.pose, WORDS.center];
 
-/** A part of the drive with one activity. */
-interface DrivePart {
+/** A section of the drive with one activity. */
+interface Section {
   name: string;
-  /** Number of whole cycles; 0 for a part that is measured by time. */
+  /** Number of whole cycles; 0 for a section that is measured by time. */
   cycles: number;
   seconds: number;
 }
 
-const isPause = ({ name }: DrivePart) => name === GAITS.stand;
-/** True for a part that is too short to be a step. */
-const isShort = (part: DrivePart) => part.seconds < (isPause(part) ? SHORTEST_PAUSE_S : SHORTEST_STEP_S);
+const isPause = ({ name }: Section) => name === GAITS.stand;
+/** True if a section is too short to become a step. */
+const isTooShort = (section: Section) => section.seconds < (isPause(section) ? MIN_PAUSE_S : MIN_STEP_S);
 
 export class Recorder {
-  private parts: DrivePart[] = [];
+  private sections: Section[] = [];
   /** Cycles of the current gait until the time `countedUntil`. */
   private cycles = 0;
+  /** The time up to which cycles are counted. */
   private countedUntil: number;
 
-  /** Begins at the time `gaitStart` with the robot's activity `gait` and its pace, percent. */
+  /** Starts at the time `gaitStart` with the robot's activity `gait` and its pace, percent. */
   constructor(
     private readonly gaits: Gait[],
     private gait: string,
@@ -45,25 +46,25 @@ export class Recorder {
     this.countedUntil = gaitStart;
   }
 
-  /** Takes the robot's current activity. */
+  /** Records that the robot's activity is `gait` from `time` on. */
   setGait(gait: string, time: number): void {
     if (gait === this.gait) return;
-    this.parts = this.partsUntil(time);
+    this.sections = this.sectionsUntil(time);
     [this.gait, this.gaitStart, this.countedUntil, this.cycles] = [gait, time, time, 0];
   }
 
-  /** Takes a new pace, percent. */
+  /** Records that the robot's pace is `percent` from `time` on. */
   setPace(percent: number, time: number): void {
     this.countCycles(time);
     this.pace = percent;
   }
 
-  /** Takes the reported phase of the robot's gait. */
+  /** Corrects the count of cycles by the phase of the gait that the robot has reported. */
   setPhase(reportedPhase: number, time: number): void {
     this.countCycles(time);
     const phase = this.currentGait?.reversed ? (1 - reportedPhase) % 1 : reportedPhase;
-    // The count is never too low, so a phase ahead of it belongs to the previous gait: the robot reports that phase
-    // until it has reached the first pose of the new gait.
+    // The count is never too low, so a phase ahead of it belongs to the previous gait: the robot reports its phase
+    // until the first pose of the new gait is reached.
     if (phase > this.cycles + COUNT_TOLERANCE_CYCLES) {
       this.cycles = 0;
       return;
@@ -71,12 +72,12 @@ export class Recorder {
     this.cycles = Math.floor(this.cycles + ROUNDING_OFFSET_CYCLES - phase) + phase;
   }
 
-  /** Returns the steps until a time, from the first gait to the last one. */
+  /** Returns the steps until `time`, from the first gait to the last one. */
   steps(time: number): string[] {
-    const parts = this.partsUntil(time).filter((part) => !isShort(part));
-    const firstIndex = parts.findIndex((part) => !isPause(part));
-    const lastIndex = parts.findLastIndex((part) => !isPause(part));
-    const steps = firstIndex < 0 ? [] : parts.slice(firstIndex, lastIndex + 1);
+    const sections = this.sectionsUntil(time).filter((section) => !isTooShort(section));
+    const firstIndex = sections.findIndex((section) => !isPause(section));
+    const lastIndex = sections.findLastIndex((section) => !isPause(section));
+    const steps = firstIndex < 0 ? [] : sections.slice(firstIndex, lastIndex + 1);
     return steps.map(({ name, cycles, seconds }) => `${name} ${cycles || `${Number(seconds.toFixed(1))} s`}`);
   }
 
@@ -90,16 +91,16 @@ export class Recorder {
     this.countedUntil = time;
   }
 
-  /** Returns all parts until a time, the current activity as the last one; successive pauses are one part. */
-  private partsUntil(time: number): DrivePart[] {
+  /** Returns all sections until `time`, ending with the current activity; consecutive pauses are one section. */
+  private sectionsUntil(time: number): Section[] {
     this.countCycles(time);
-    const { parts, gait, currentGait } = this;
+    const { sections, gait, currentGait } = this;
     const seconds = time - this.gaitStart;
-    const part = PAUSE_ACTIVITIES.includes(gait)
+    const section = PAUSE_ACTIVITIES.includes(gait)
       ? { name: GAITS.stand, cycles: 0, seconds }
       : { name: gait, cycles: currentGait ? Math.max(0, Math.floor(this.cycles + COUNT_TOLERANCE_CYCLES)) : 0, seconds };
-    const previous = parts.at(-1);
-    if (!previous || !isPause(part) || !isPause(previous)) return [...parts, part];
-    return [...parts.slice(0, -1), { ...previous, seconds: previous.seconds + seconds }];
+    const previous = sections.at(-1);
+    if (!previous || !isPause(section) || !isPause(previous)) return [...sections, section];
+    return [...sections.slice(0, -1), { ...previous, seconds: previous.seconds + seconds }];
   }
 }

@@ -1,4 +1,4 @@
-// The calibration of a robot at its first connection, on one board. Its steps are Rust, in the
+// The calibration of a robot at its first connection, on one board. Its steps are implemented in Rust, in the
 // WebAssembly module for boards.
 import type { Console, Guide } from '../../generated/board';
 import { loadBoard } from '../board';
@@ -10,7 +10,7 @@ import { WORDS } from '../words';
 
 const LOST_MESSAGE = 'The board has restarted or is gone; what was not saved is lost.';
 
-/** The console of a board, until the board restarts or is gone. */
+/** The console of a board; usable until the board restarts or is gone. */
 class BoardConsole implements Console {
   private readonly link: Link;
   private readonly bannerCount: number;
@@ -20,6 +20,7 @@ class BoardConsole implements Console {
     this.bannerCount = session.state.bannerCount.value;
   }
 
+  /** True if the board is still connected and has not restarted. */
   get isCurrent(): boolean {
     return this.session.link === this.link && this.session.state.bannerCount.value === this.bannerCount;
   }
@@ -36,6 +37,7 @@ class BoardConsole implements Console {
   }
 }
 
+/** A guide through the calibration of the connected board. */
 export class BoardGuide {
   /** The robot's calibration after the last action, saved or not. */
   calibration: Readonly<Calibration>;
@@ -56,12 +58,12 @@ export class BoardGuide {
     return new BoardGuide(console, await Guide.begin(console));
   }
 
-  /** True if the board is still the same and has not restarted. */
+  /** True if the board is still connected and has not restarted. */
   get isCurrent(): boolean {
     return this.console.isCurrent;
   }
 
-  /** Runs an action, one at a time. Throws an error with a message for the user. */
+  /** Runs an action; only one may run at a time. Throws an error with a message for the user. */
   async run<T>(action: (guide: Guide) => Promise<T>): Promise<T> {
     try {
       return await action(this.guide);

@@ -1,5 +1,5 @@
-// The bars and joints of a robot in its neutral pose, and the lengths that result when a joint is dragged. Servos
-// keep their neutral angles, so a crank's tip moves along the crank.
+// The bars and joints of a robot in its neutral pose, and the lengths that result when a joint is dragged. The servos
+// keep their neutral angles, so the tip of a crank moves along the crank. Points are in mm of the chassis frame.
 import type { Edits, Point, Scene } from '../robot';
 
 /** A bar between two points, with the key of its length in robot.toml. */
@@ -12,9 +12,9 @@ export interface Bar {
 /** A joint that can be dragged. */
 export interface Joint {
   name: string;
-  at: Point;
-  /** Returns the edits that put the joint at `to`. If `isSymmetric`, the mirrored lengths change, too. */
-  lengthsAt(to: Point, isSymmetric: boolean): Edits;
+  position: Point;
+  /** Returns the edits of lengths that move the joint to `to`. If `isSymmetric`, the mirrored lengths change, too. */
+  editsFor(to: Point, isSymmetric: boolean): Edits;
 }
 
 const linkKey = (n: number) => `links.l${n}`;
@@ -22,13 +22,13 @@ const linkKey = (n: number) => `links.l${n}`;
 const round = (mm: number) => Math.round(mm * 2) / 2;
 const distance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
-/** Returns the distance of `to` from `from`, measured along the direction from `from` to `towards`. */
+/** Returns the distance from `from` to the projection of `to` on the line from `from` through `towards`. */
 function distanceAlong(from: Point, towards: Point, to: Point): number {
   const length = distance(from, towards) || 1;
   return ((towards[0] - from[0]) * (to[0] - from[0]) + (towards[1] - from[1]) * (to[1] - from[1])) / length;
 }
 
-/** Each side's front and rear servo, and the numbers of its links in robot.toml. */
+/** The front and rear servo of each side, and the numbers of its links in robot.toml. */
 const SIDES = [
   { name: 'left', front: 0, rear: 3, chassis: 10, rearArm: 11, rearHalf: 12, frontHalf: 13, frontArm: 14 },
   { name: 'right', front: 1, rear: 2, chassis: 15, rearArm: 16, rearHalf: 17, frontHalf: 18, frontArm: 19 },
@@ -40,7 +40,7 @@ const ENDS = [
   { name: 'tail', left: 3, right: 2, base: 5, leftCrank: 6, leftCoupler: 7, rightCoupler: 8, rightCrank: 9 },
 ] as const;
 
-/** Returns the bars of the robot's loops and legs at the pose of the scene. */
+/** Returns the bars of the robot's loops and legs in the scene's pose. */
 export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
   const barOf = (key: string, from: Point, to: Point): Bar => ({ key, from, to });
   return [
@@ -72,56 +72,56 @@ export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
 
 /** Returns the joints that can be dragged; `lengthOf` returns a length in robot.toml, mm, by its key. */
 export function joints({ shafts, tips, points, sliders, legs }: Scene, lengthOf: (key: string) => number): Joint[] {
-  /**
-   * Lengthens each half of a slider by half the change of the distance between its arm tips, so that its travel stays.
+  /** Lengthens each half of a slider by half the change of the distance between its arm tips, so that the slider keeps its
+   * travel.
    */
   const halfEdits = (side: (typeof SIDES)[number], change: number): Edits => [
     [linkKey(side.rearHalf), round(lengthOf(linkKey(side.rearHalf)) + change / 2)],
     [linkKey(side.frontHalf), round(lengthOf(linkKey(side.frontHalf)) + change / 2)],
   ];
   const cranks = ENDS.flatMap((end): Joint[] =>
-    (['left', 'right'] as const).map((hand) => {
-      const servo = end[hand];
-      const [ownKey, otherKey] = hand === 'left' ? [end.leftCrank, end.rightCrank] : [end.rightCrank, end.leftCrank];
+    (['left', 'right'] as const).map((side) => {
+      const servo = end[side];
+      const [ownKey, otherKey] = side === 'left' ? [end.leftCrank, end.rightCrank] : [end.rightCrank, end.leftCrank];
       return {
-        name: `end of the ${end.name}'s ${hand} crank`,
-        at: tips[servo],
-        lengthsAt: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [linkKey(n), round(distanceAlong(shafts[servo], tips[servo], to))]),
+        name: `end of the ${end.name}'s ${side} crank`,
+        position: tips[servo],
+        editsFor: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [linkKey(n), round(distanceAlong(shafts[servo], tips[servo], to))]),
       };
     }),
   );
   const ends = ENDS.map((end, n): Joint => ({
     name: `point of the ${end.name}`,
-    at: points[n],
-    lengthsAt(to, isSymmetric) {
+    position: points[n],
+    editsFor(to, isSymmetric) {
       const middleX = (tips[end.left][0] + tips[end.right][0]) / 2;
       const point: Point = isSymmetric ? [middleX, to[1]] : to;
       return [[linkKey(end.leftCoupler), round(distance(tips[end.left], point))], [linkKey(end.rightCoupler), round(distance(tips[end.right], point))]];
     },
   }));
   const arms = SIDES.flatMap((side, n): Joint[] =>
-    (['front', 'rear'] as const).map((position) => {
+    (['front', 'rear'] as const).map((end) => {
       const { tips: [front, rear] } = sliders[n];
-      const [shaft, tip, key] = position === 'front' ? [shafts[side.front], front, 'frontArm' as const] : [shafts[side.rear], rear, 'rearArm' as const];
+      const [shaft, tip, key] = end === 'front' ? [shafts[side.front], front, 'frontArm' as const] : [shafts[side.rear], rear, 'rearArm' as const];
       return {
-        name: `end of the ${position} ${side.name} arm`,
-        at: tip,
-        lengthsAt(to, isSymmetric) {
+        name: `end of the ${end} ${side.name} arm`,
+        position: tip,
+        editsFor(to, isSymmetric) {
           const length = round(distanceAlong(shaft, tip, to));
           const scale = length / distance(shaft, tip);
           const movedTip: Point = [shaft[0] + scale * (tip[0] - shaft[0]), shaft[1] + scale * (tip[1] - shaft[1])];
-          const change = position === 'front' ? distance(movedTip, rear) - distance(front, rear) : distance(front, movedTip) - distance(front, rear);
+          const change = end === 'front' ? distance(movedTip, rear) - distance(front, rear) : distance(front, movedTip) - distance(front, rear);
           return (isSymmetric ? SIDES : [side]).flatMap((movedSide): Edits => [[linkKey(movedSide[key]), length], ...halfEdits(movedSide, change)]);
         },
       };
     }),
   );
   const bases = ENDS.flatMap((end, n): Joint[] =>
-    (['left', 'right'] as const).map((hand) => ({
-      name: `the ${end.name}'s ${hand} servo`,
-      at: shafts[end[hand]],
-      lengthsAt(to) {
-        const [ownShaft, otherShaft] = [shafts[end[hand]], shafts[end[hand === 'left' ? 'right' : 'left']]];
+    (['left', 'right'] as const).map((side) => ({
+      name: `the ${end.name}'s ${side} servo`,
+      position: shafts[end[side]],
+      editsFor(to) {
+        const [ownShaft, otherShaft] = [shafts[end[side]], shafts[end[side === 'left' ? 'right' : 'left']]];
         const middleX = (ownShaft[0] + otherShaft[0]) / 2;
         // The head's servos move outward by +y, the tail's by -y.
         const change = round((n === 0 ? 1 : -1) * (to[1] - ownShaft[1]));
@@ -133,8 +133,8 @@ export function joints({ shafts, tips, points, sliders, legs }: Scene, lengthOf:
   );
   const knees = legs.map(({ pivots, joints }, n): Joint => ({
     name: `knee of leg ${n + 1}`,
-    at: joints[0],
-    lengthsAt: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, round(distanceAlong(pivots[0], joints[0], to))]),
+    position: joints[0],
+    editsFor: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, round(distanceAlong(pivots[0], joints[0], to))]),
   }));
   return [...bases, ...arms, ...knees, ...cranks, ...ends];
 }

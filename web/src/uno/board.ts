@@ -1,5 +1,5 @@
-// A simulated Arduino UNO that can be reset and flashed. The chip is that of tools/judge, on avr8js; a reset makes a
-// new chip with the old memories.
+// A simulated Arduino UNO that can be reset and flashed. The chip is that of tools/judge, on avr8js; a reset creates a
+// new chip with the contents of the previous chip's memories.
 import { skipBusyWaits } from '../../../tools/judge/src/busy-wait.js';
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
 import { addReceiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
@@ -10,51 +10,51 @@ import { Uno } from '../../../tools/judge/src/uno.js';
 /** Clock frequency of the chip, Hz. */
 export const FREQUENCY_HZ = 16_000_000;
 
-/** Number of bits per byte on the serial line, with start and stop bit. */
+/** Number of bits per byte on the serial line, including start and stop bit. */
 const BITS_PER_BYTE = 10;
-/** Share by which a baud rate may differ from the chip's; beyond it every byte is garbled. */
-const MAX_RATE_ERROR = 0.045;
-/** The byte that replaces each byte received at a baud rate other than that of its sender; no text contains it. */
+/** Largest relative difference between the baud rates of the two sides; beyond it every byte is garbled. */
+const MAX_BAUD_ERROR = 0.045;
+/** The byte that stands for any byte received at a wrong baud rate; no text contains it. */
 const UNREADABLE_BYTE = 0xfe;
-/** Address of the register with the cause of the last reset. */
+/** Data address of the register with the cause of the last reset. */
 const MCUSR = 0x54;
-/** Address of the RAM, after the registers. */
+/** Data address of the RAM, after the registers. */
 const RAM_START = 0x100;
-/** Byte address of a boot loader of 512 bytes. */
+/** Byte address in flash of a boot loader of 512 bytes. */
 export const BOOT_START = 0x7e00;
 
-/** Causes of a reset as bits of MCUSR. */
+/** The bit of MCUSR for each cause of a reset. */
 const RESET_CAUSE_BITS = { power: 0x01, external: 0x02, watchdog: 0x08 };
 export type ResetCause = keyof typeof RESET_CAUSE_BITS;
 
-/** Thrown by the chip's watchdog to leave the run of a chip that is reset. */
+/** Thrown when the chip's watchdog resets the chip, to end its run. */
 class ChipReset extends Error {}
 
 export class SimulatedBoard {
   /** Called with each byte that the UNO has sent. */
   onByte: (byte: number) => void = () => {};
-  /** Called when a pulse has ended: Arduino number of the pin, cycle of the rise, width in cycles. */
+  /** Called when a pulse has ended: Arduino number of the pin, cycle of the rising edge, width in cycles. */
   onPulse: (pin: number, rise: number, width: number) => void = () => {};
-  /** Called with each byte that was sent to the UNO when it arrives, and the cycle. */
+  /** Called when a byte arrives at the UNO, with the byte and the cycle. */
   onReceived: (byte: number, cycle: number) => void = () => {};
-  /** The baud rate of the other side of the serial line. */
+  /** The baud rate at the other end of the serial line. */
   baud = 115_200;
   /** Number of bytes that the UNO's receiver has lost. */
-  lost = 0;
+  lostBytes = 0;
 
   private uno!: Uno & { receive?(byte: number, isGarbled: boolean): boolean };
-  /** Cycles from power-on to the last reset. */
+  /** Number of cycles from power-on to the last reset. */
   private cyclesBeforeReset = 0;
-  /** The bytes that were sent to the UNO and have not arrived. */
+  /** The bytes that were sent to the UNO and have not arrived yet. */
   private readonly bytesToDeliver: number[] = [];
   private isLineBusy = false;
   private volts = 5;
-  /** The contacts between pins and ground, by Arduino number: true if closed. */
+  /** The contacts between pins and ground, by the pins' Arduino numbers: true if closed. */
   private readonly contacts = new Map<number, boolean>();
 
   /**
-   * Starts a UNO at power-on. `image` is the beginning of flash, `bootLoader` what it has from `BOOT` on, `rail` the
-   * converter's channel for the servos' rail and the voltage at its pin, `eeprom` the content of a previous board's
+   * Powers on a UNO. `image` is the content of the flash from address 0, `bootLoader` that from `BOOT_START`, `rail`
+   * the ADC channel of the servos' rail and the voltage at its pin, and `eeprom` the content of a previous board's
    * EEPROM.
    */
   constructor(
@@ -66,7 +66,7 @@ export class SimulatedBoard {
     const flash = new Uint8Array(32 * 1024).fill(0xff);
     if (image !== null) flash.set(image);
     if (bootLoader !== null) flash.set(bootLoader, BOOT_START);
-    this.begin('power', flash, eeprom);
+    this.startChip('power', flash, eeprom);
   }
 
   /** Cycles since power-on. */
@@ -74,12 +74,12 @@ export class SimulatedBoard {
     return this.cyclesBeforeReset + this.uno.cpu.cycles;
   }
 
-  /** The whole flash. */
+  /** The content of the whole flash. */
   get flash(): Uint8Array {
     return this.uno.flash;
   }
 
-  /** The whole EEPROM. */
+  /** The content of the whole EEPROM. */
   get eeprom(): Uint8Array {
     return this.uno.eepromBytes;
   }
@@ -103,7 +103,7 @@ export class SimulatedBoard {
     this.deliverNextByte();
   }
 
-  /** Sets the voltage of the board. */
+  /** Sets the supply voltage of the board, V. */
   setSupply(volts: number): void {
     this.volts = volts;
     this.uno.adc.avcc = volts;
@@ -122,18 +122,19 @@ export class SimulatedBoard {
     else C.setPin(pin - 14, !isClosed);
   }
 
-  /** Resets the chip; flash, EEPROM and RAM keep their content. */
+  /** Resets the chip. Flash and EEPROM keep their contents, and so does the RAM, except at power-on. */
   reset(cause: ResetCause): void {
     const { cpu, flash, eepromBytes } = this.uno;
     this.cyclesBeforeReset += cpu.cycles;
     this.bytesToDeliver.length = 0;
     this.isLineBusy = false;
     const ram = cpu.data.slice(RAM_START);
-    this.begin(cause, flash, eepromBytes);
+    this.startChip(cause, flash, eepromBytes);
     if (cause !== 'power') this.uno.cpu.data.set(ram, RAM_START);
   }
 
-  private begin(cause: ResetCause, flash: Uint8Array, eeprom?: Uint8Array): void {
+  /** Creates a chip with these memories, as it starts after a reset by this cause. */
+  private startChip(cause: ResetCause, flash: Uint8Array, eeprom?: Uint8Array): void {
     const uno = new Uno([...corrections, addSelfProgramming, addReceiveBuffer, skipBusyWaits]);
     this.uno = uno;
     uno.flash.set(flash);
@@ -151,9 +152,9 @@ export class SimulatedBoard {
     new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, cyclesBefore + rise, width));
   }
 
-  /** True while the chip's baud rate and that of the other side differ too much. */
+  /** True if the chip's baud rate and that of the other end differ too much. */
   private get isGarbled(): boolean {
-    return Math.abs(this.uno.usart.baudRate / this.baud - 1) > MAX_RATE_ERROR;
+    return Math.abs(this.uno.usart.baudRate / this.baud - 1) > MAX_BAUD_ERROR;
   }
 
   private deliverNextByte(): void {
@@ -164,7 +165,7 @@ export class SimulatedBoard {
       this.isLineBusy = false;
       const byte = this.bytesToDeliver.shift();
       if (uno !== this.uno || byte === undefined) return;
-      if (!uno.receive?.(byte, this.isGarbled)) this.lost += 1;
+      if (!uno.receive?.(byte, this.isGarbled)) this.lostBytes += 1;
       this.onReceived(byte, this.cycle);
       this.deliverNextByte();
     }, Math.round((BITS_PER_BYTE * FREQUENCY_HZ) / this.baud));

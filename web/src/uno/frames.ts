@@ -1,24 +1,24 @@
-// Collects single pulses into frames: the widths of all four servos within 20 ms.
+// Collects single pulses into frames, which have the pulse widths of all four servos within 20 ms.
 import type { Four } from '../robot';
 import { FREQUENCY_HZ } from './board';
 
-/** Cycles from a frame's first pulse after which the frame is over: four slots of 4 ms, one for each servo. */
-const FOUR_SLOTS_CYCLES = 0.0165 * FREQUENCY_HZ;
+/** Time after a frame's first rising edge at which the frame is over: a little more than its four slots of 4 ms. */
+const MAX_FRAME_CYCLES = 0.0165 * FREQUENCY_HZ;
 
 export class FrameCollector {
   private widths: Four<number> = [0, 0, 0, 0];
-  /** The cycle at which the frame's first pulse rose; null before it. */
+  /** The cycle of the frame's first rising edge; null before it. */
   private startCycle: number | null = null;
-  /** The servo of the last pulse; -1 before the first. */
+  /** The servo of the frame's last pulse; -1 before the first. */
   private lastServo = -1;
 
-  /** Takes the Arduino pin numbers of the four servos, in their order. */
+  /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
   constructor(
     private readonly pins: number[],
     private readonly onFrame: (widths: Four<number>, cycle: number) => void,
   ) {}
 
-  /** Adds a pulse: its pin, the cycle at which it rose, and its width in cycles. */
+  /** Adds a pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
   add(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
@@ -30,9 +30,9 @@ export class FrameCollector {
     if (servo === 3) this.close();
   }
 
-  /** Closes the frame if its time is over at a cycle, even if not all servos have had a pulse. */
+  /** Closes the frame if its time is over at `cycle`, even if not all servos have had a pulse. */
   advanceTo(cycle: number): void {
-    if (this.startCycle !== null && cycle - this.startCycle > FOUR_SLOTS_CYCLES) this.close();
+    if (this.startCycle !== null && cycle - this.startCycle > MAX_FRAME_CYCLES) this.close();
   }
 
   private close(): void {

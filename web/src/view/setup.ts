@@ -94,7 +94,7 @@ export class Setup implements StepTools {
 
   /** Opens the dialog at a step. */
   private open(step: Step): void {
-    this.session.letGo();
+    this.session.stopIfWalking();
     this.dialog.hidden = false;
     reveal(this.dialog);
     element('setup-open').setAttribute('aria-expanded', 'true');

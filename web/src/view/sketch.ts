@@ -123,11 +123,11 @@ export class Sketch {
     }
     if (this.draggedJoint) {
       // Joints are drawn where the lengths put them, so the dragged joint may be away from the pointer.
-      joints(scene, () => 0).forEach(({ at: [x, y] }, n) => setAttributes(this.jointGroup.children[n], { cx: x, cy: -y }));
+      joints(scene, () => 0).forEach(({ position: [x, y] }, n) => setAttributes(this.jointGroup.children[n], { cx: x, cy: -y }));
       return;
     }
     const lengthOf = (key: string) => lengths.get(key)?.value ?? 0;
-    this.jointGroup.replaceChildren(...joints(scene, lengthOf).map((joint) => this.makeJoint(joint, toPicture(joint.at))));
+    this.jointGroup.replaceChildren(...joints(scene, lengthOf).map((joint) => this.makeJoint(joint, toPicture(joint.position))));
   }
 
   private makeJoint(joint: Joint, [cx, cy]: Point): SVGCircleElement {
@@ -157,7 +157,7 @@ export class Sketch {
     const matrix = this.picture.getScreenCTM();
     if (!matrix) return;
     const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
-    this.tryOut(joint.lengthsAt([x, -y], this.symmetryBox.checked), isLast);
+    this.tryOut(joint.editsFor([x, -y], this.symmetryBox.checked), isLast);
   }
 
   /** Selects the number input for the length of a clicked bar. */
