@@ -11,7 +11,7 @@
 //! - [`input`] reads the contacts that routines wait for.
 //! - [`eeprom`] owns the EEPROM; [`supply`] owns the analogue-to-digital converter.
 //! - [`watchdog`] restarts the program when it hangs; [`kept`] carries the servos' state from
-//!   the previous run to the next; [`stack`] protects the data from the stack.
+//!   one run to the next; [`stack`] protects the data from the stack.
 //! - [`sleep`] stops the processor until a tick, a received byte or an empty send buffer.
 //!
 //! Main never switches interrupts off for more than the few cycles that `sleep`, a 16-bit

@@ -59,7 +59,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Returns the number of bytes that there is room for.
+    /// Returns the number of bytes for which there is room.
     fn room(&self) -> u8 {
         Self::CAPACITY - self.head.get().wrapping_sub(self.tail.get())
     }
@@ -91,6 +91,7 @@ impl<const N: usize> Ring<N> {
 
 static RECEIVED: Ring<RECEIVE_RING_SIZE> = Ring::new();
 static TO_SEND: Ring<SEND_RING_SIZE> = Ring::new();
+/// Counts received bytes that were lost or garbled.
 static LOST: Counter = Counter::new();
 
 /// Sets up the port. Call it once, with interrupts off.
@@ -172,6 +173,7 @@ impl uWrite for Writer {
     }
 }
 
+/// Sends a byte; waits while there is no room for it.
 #[inline(never)]
 fn send(byte: u8) {
     while room() == 0 {}

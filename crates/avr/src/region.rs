@@ -37,7 +37,7 @@ impl<'a> Region<'a> {
     /// The region that a program starts with: on a host, no bytes.
     pub const INITIAL: Self = Self { bytes: &[] };
 
-    /// A region of these bytes.
+    /// Creates a region of these bytes.
     pub const fn new(bytes: &'a [u8]) -> Self {
         Self { bytes }
     }

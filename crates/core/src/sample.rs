@@ -1,8 +1,8 @@
 //! Robots for the tests of this crate, made at run time from floating-point measurements. The tests compare the core's
 //! integer arithmetic with exact results for the same measurements.
 //!
-//! [`Sample::odd`] and the random robots have no symmetry at all: no two bars are equally long, each kind of limit
-//! differs, and every servo has its own gain, neutral width and travel. So a test fails if the code confuses the
+//! [`Sample::asymmetric`] and the random robots have no symmetry at all: no two bars are equally long, each kind of
+//! limit differs, and every servo has its own gain, neutral width and travel. So a test fails if the code confuses the
 //! numbers of two parts.
 
 pub mod bounds;
@@ -178,9 +178,9 @@ impl Sample {
         Self::new(Measurements::paper())
     }
 
-    /// The robot of [`Measurements::odd`].
-    pub fn odd() -> Self {
-        Self::new(Measurements::odd())
+    /// The robot of [`Measurements::asymmetric`].
+    pub fn asymmetric() -> Self {
+        Self::new(Measurements::asymmetric())
     }
 
     /// Yields random robots of [`Measurements::random`] whose neutral pose the integer guard accepts, as it must for

@@ -90,7 +90,7 @@ impl Default for Counter {
 }
 
 impl Counter {
-    /// A counter at zero.
+    /// Creates a counter at zero.
     #[must_use]
     pub const fn new() -> Self {
         Self(Word::new(0))

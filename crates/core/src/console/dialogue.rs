@@ -61,7 +61,7 @@ impl Default for Console {
 }
 
 impl Console {
-    /// A console that has received nothing; it writes the banner first.
+    /// Creates a console that has received nothing; it writes the banner first.
     pub const fn new() -> Self {
         Self {
             line: Line::new(),

@@ -145,7 +145,7 @@ mod tests {
     fn angles_have_two_decimals_and_commas_between_them() {
         let mut text = String::new();
         let centideg = [0, 4_141, 31_860, 35_999];
-        let robot = Sample::odd();
+        let robot = Sample::asymmetric();
         let pose = Pose::from_angles(&centideg.map(Angle::from_centideg), &robot.neutral_angles());
         print_angles(&mut text, &pose, &robot);
         assert_eq!(text, "0.00,41.41,318.60,359.99");

@@ -34,7 +34,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// An empty line.
+    /// Creates an empty line.
     pub const fn new() -> Self {
         Self {
             bytes: Vec::new(),

@@ -179,10 +179,10 @@ mod tests {
     use crate::numbers::units::Sine;
     use crate::sample::Sample;
 
-    /// Returns the text that a function prints for the odd robot.
+    /// Returns the text that a function prints for the asymmetric robot.
     fn print_to_string(print: impl FnOnce(&Motion, &mut String)) -> String {
         let mut text = String::new();
-        print(&Motion::new(*Sample::odd()), &mut text);
+        print(&Motion::new(*Sample::asymmetric()), &mut text);
         text
     }
 
@@ -296,7 +296,10 @@ mod tests {
         }
         // The nominal lengths are 91 mm on the left and 98 mm on the right; a millimetre has 256 steps.
         assert_eq!(
-            Sample::odd().content.sliders.map(|side| side.scale.bits),
+            Sample::asymmetric()
+                .content
+                .sliders
+                .map(|side| side.scale.bits),
             [8, 8]
         );
         for (side, mm, message) in [

@@ -31,7 +31,7 @@ impl Contact {
         history: 0,
     };
 
-    /// A contact that ends its step by closing after it was open.
+    /// Creates a contact that ends its step by closing after it was open.
     pub const fn waiting_to_close(input: Input) -> Self {
         Self {
             input,
@@ -39,7 +39,7 @@ impl Contact {
         }
     }
 
-    /// A contact that ends its step by being closed, even if it is closed from the start.
+    /// Creates a contact that ends its step by being closed, even if it is closed from the start.
     pub const fn waiting_while_open(input: Input) -> Self {
         Self { input, history: 0 }
     }

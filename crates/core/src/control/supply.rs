@@ -136,7 +136,7 @@ impl Supplies {
 }
 
 impl Supply {
-    /// A supply that is not measured yet.
+    /// Creates a supply that is not measured yet.
     pub const fn new() -> Self {
         Self {
             reading: Reading {

@@ -51,7 +51,7 @@ impl<'a> FiveBar<'a> {
     /// A linkage without bars, which never closes.
     pub const NONE: Self = Self::new(Bars::NONE, Tables::NONE);
 
-    /// A linkage with these bars and the tables of its couplers.
+    /// Creates a linkage with these bars and the tables of its couplers.
     pub const fn new(bars: Bars, tables: Tables<'a>) -> Self {
         Self { bars, tables }
     }
@@ -61,8 +61,8 @@ impl<'a> FiveBar<'a> {
         &self.bars
     }
 
-    /// The margins for these directions of the cranks, in the end's own frame. All are zero if the loop cannot close,
-    /// or if the tables have no value; the type-2 margin is then below a tenth.
+    /// Computes the margins for these directions of the cranks, in the end's own frame. All are zero if the loop cannot
+    /// close, or if the tables have no value; the type-2 margin is then below a tenth.
     #[inline(never)]
     pub fn margins(&self, left: &Direction, right: &Direction) -> EndMargins {
         let bars = &self.bars;

@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn an_offset_reads_ahead_a_negative_gain_reverses_and_a_zero_gain_holds_still() {
-        let robot = Sample::odd();
+        let robot = Sample::asymmetric();
         let wave = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
             let offset_channel = Channel {
@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn a_pose_reads_each_servos_own_channel_and_waveform() {
-        let robot = Sample::odd();
+        let robot = Sample::asymmetric();
         for gait in &robot.content.gaits {
             for phase in (0..CYCLE).step_by(99_991) {
                 let pose = gait.pose(robot.waves(), phase);
@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn a_gait_with_a_negative_increment_is_read_backwards() {
-        let robot = Sample::odd();
+        let robot = Sample::asymmetric();
         let [forward_gait, backward_gait] =
             ["sway", "back"].map(|name| robot.gait(robot.gait_id(name)));
         let mut phases = Vec::from([0]);

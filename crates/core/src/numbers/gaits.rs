@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn names_and_ids_of_gaits_have_the_same_order() {
-        let robot = Sample::odd();
+        let robot = Sample::asymmetric();
         let ids: Vec<GaitId> = GaitId::all(robot.gait_count()).collect();
         assert_eq!(ids.len(), GAIT_NAMES.len());
         assert_eq!(ids[0], GaitId::STAND);

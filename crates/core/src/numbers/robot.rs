@@ -204,7 +204,7 @@ impl<'a> Robot<'a> {
         self.read_number(offset_of!(Numbers, parts) + part as usize * size_of::<PartRange>())
     }
 
-    /// All elements of a part.
+    /// Returns all elements of a part.
     #[inline(always)]
     fn part_elements<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
         let PartRange { address, count } = self.part_range(part);

@@ -61,7 +61,7 @@ impl Measurements {
 
     /// A robot without symmetry: its head differs from its tail, its left side from its right, and no two servos are
     /// alike.
-    pub fn odd() -> Self {
+    pub fn asymmetric() -> Self {
         let servo =
             |neutral_deg, neutral_us, us_per_degree: f64, lower_deg: f64, upper_deg: f64| Servo {
                 neutral_deg,

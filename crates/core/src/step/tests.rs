@@ -14,7 +14,7 @@ use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 fn start_robot(ticks: u8, received: &str) -> RunningRobot {
     let mut board = VirtualBoard::default().at_tick(ticks);
     board.send(received.as_bytes());
-    RunningRobot::with_flash(Sample::odd().section(), board)
+    RunningRobot::with_flash(Sample::asymmetric().section(), board)
 }
 
 /// Runs a step. Returns true if the main loop did something in it.
@@ -24,7 +24,7 @@ fn run_step(robot: &mut RunningRobot) -> bool {
 
 /// Returns a robot that stands and has received a line of garbled bytes, as from a sender at another rate.
 fn robot_after_garbled_line() -> RunningRobot {
-    let mut robot = RunningRobot::power_on(*Sample::odd());
+    let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(10);
     robot
         .board
@@ -138,7 +138,7 @@ fn a_frame_that_waits_to_be_played_is_replaced_only_at_rest() {
 #[test]
 fn submitted_pulses_are_those_of_the_motion_and_counters_reach_status() {
     let mut robot = start_robot(0, "");
-    let mut motion_alone = Motion::new(*Sample::odd());
+    let mut motion_alone = Motion::new(*Sample::asymmetric());
     for _ in 0..30 {
         robot.run_frame();
         assert_eq!(robot.board.submitted_pulses(), motion_alone.tick());
@@ -214,7 +214,7 @@ fn the_servos_state_is_stored_in_every_frame_even_at_rest() {
 
 #[test]
 fn a_slow_memory_delays_the_input_but_no_frame() {
-    let mut robot = RunningRobot::power_on(*Sample::odd());
+    let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(10);
     robot.board.send(b"save\rstand\r");
     robot.board.memory.write_delay = 50;

@@ -9,7 +9,7 @@ use crate::step::{Main, Step};
 
 /// Returns a robot that stands.
 fn standing_robot() -> RunningRobot {
-    let mut robot = RunningRobot::power_on(*Sample::odd());
+    let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(30);
     robot
 }
@@ -175,7 +175,7 @@ fn bytes_beyond_the_receivers_capacity_are_lost_and_counted() {
         (RECEIVE_CAPACITY, 5)
     );
     let mut main = Main::new();
-    main.begin(Sample::odd().section(), &mut board);
+    main.begin(Sample::asymmetric().section(), &mut board);
     while main.step(&mut board) == Step::Worked {}
     assert_eq!(board.unread_count(), 0);
 }
@@ -184,7 +184,7 @@ fn bytes_beyond_the_receivers_capacity_are_lost_and_counted() {
 fn the_first_pulses_after_a_reset_repeat_the_last_submitted_frame() {
     // Settings that change before the servos wake must not move them beyond the last submitted frame: the first
     // pulses repeat it, and the slew limit counts from there.
-    let mut robot = RunningRobot::power_on(*Sample::odd());
+    let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(200);
     robot.send_line("sway");
     robot.run_frames(60);
@@ -227,7 +227,7 @@ fn largest_changes(robot: &mut RunningRobot, frames: usize) -> [u16; 4] {
 
 #[test]
 fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
-    let robot = Sample::odd();
+    let robot = Sample::asymmetric();
     let sweep_per_frame = robot.slew().per_frame;
     let max_changes = robot
         .calibration()

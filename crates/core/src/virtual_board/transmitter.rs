@@ -27,7 +27,7 @@ pub struct Transmitter {
 }
 
 impl Default for Transmitter {
-    /// A line that sends at once.
+    /// Creates a line that sends at once.
     fn default() -> Self {
         Self::new(0, 255)
     }

@@ -8,9 +8,9 @@ mod angles;
 use super::*;
 use crate::sample::{GAIT_NAMES, Sample};
 
-/// Parses a line for the odd sample robot.
+/// Parses a line for the asymmetric sample robot.
 fn parse_line(line: &str) -> Result<Command, LineError> {
-    parse(line.as_bytes(), &Sample::odd())
+    parse(line.as_bytes(), &Sample::asymmetric())
 }
 
 /// Returns the command that starts a gait without a number of cycles.
@@ -43,7 +43,7 @@ fn words_are_parsed_as_their_commands() {
         ("boot stand", Order::Boot(Boot::Gait(GaitId::STAND))),
         (
             "boot sway  left",
-            Order::Boot(Boot::Gait(Sample::odd().gait_id("sway left"))),
+            Order::Boot(Boot::Gait(Sample::asymmetric().gait_id("sway left"))),
         ),
         ("deadman 0", Order::Deadman(0)),
         ("deadman 60000", Order::Deadman(60_000)),
@@ -215,7 +215,7 @@ fn a_setting_out_of_range_is_answered_by_the_range() {
 
 #[test]
 fn every_gait_is_a_command_with_any_blanks_between_its_words() {
-    let robot = Sample::odd();
+    let robot = Sample::asymmetric();
     for name in GAIT_NAMES {
         let command = Ok(command_of_gait(robot.gait_id(name)));
         for blank in [" ", "   ", "\t", " \t "] {
@@ -246,7 +246,7 @@ fn a_line_that_only_resembles_the_name_of_a_gait_is_an_error() {
 
 #[test]
 fn the_first_words_of_a_gaits_name_alone_are_an_incomplete_name() {
-    let robot = Sample::odd().with_gait("arc to left");
+    let robot = Sample::asymmetric().with_gait("arc to left");
     let read = |line: &str| parse(line.as_bytes(), &robot);
     assert_eq!(read("arc"), Err(LineError::IncompleteName));
     assert_eq!(read("arc to"), Err(LineError::IncompleteName));
@@ -262,7 +262,7 @@ fn the_first_words_of_a_gaits_name_alone_are_an_incomplete_name() {
 
 #[test]
 fn every_gait_accepts_every_count_from_1_to_999_and_no_other() {
-    let robot = Sample::odd();
+    let robot = Sample::asymmetric();
     for name in GAIT_NAMES {
         let read = |count: &str| parse(format!("{name} {count}").as_bytes(), &robot);
         for count in (0..=70_000u32).chain([655_360, 655_361, 99_999_999]) {
@@ -355,7 +355,7 @@ fn parse_with_number(word: &str, number: u32) -> Result<Command, LineError> {
 
 /// Calls a function with a shared robot, since making a robot takes longer than parsing a line.
 fn with_shared_robot<T>(call: impl FnOnce(&Sample) -> T) -> T {
-    std::thread_local!(static ROBOT: Sample = Sample::odd());
+    std::thread_local!(static ROBOT: Sample = Sample::asymmetric());
     ROBOT.with(call)
 }
 

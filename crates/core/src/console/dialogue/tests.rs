@@ -30,16 +30,16 @@ use crate::step::Step;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_answer};
 use dialogue::{
     Dialogue, neutral_pose_text, parse_pairs, run_frame_and_read_widths, set_supply,
-    wake_odd_robot, wake_robot,
+    wake_asymmetric_robot, wake_robot,
 };
 
-/// The command for the neutral pose of [`Sample::odd`].
+/// The command for the neutral pose of [`Sample::asymmetric`].
 const NEUTRAL_COMMAND: &str = "pose 132.37 47.91 309.64 226.18";
 
 #[test]
 fn the_banner_names_version_and_robot_once() {
     for hash in [0, 0x1f0a_9c3e, 0x0000_00f0, u32::MAX, 0x9999_9999] {
-        let mut dialogue = Dialogue::power_on(Sample::odd().with_hash(hash));
+        let mut dialogue = Dialogue::power_on(Sample::asymmetric().with_hash(hash));
         let version = env!("CARGO_PKG_VERSION");
         let banner =
             format!("# lizard {version} robot sample {hash:08x}, send help for the commands");
@@ -61,10 +61,13 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
         NEUTRAL_COMMAND,
     ];
     for command in commands.into_iter().chain(GAIT_NAMES) {
-        assert_eq!(wake_odd_robot().send_line(command), format!("ok {command}"));
+        assert_eq!(
+            wake_asymmetric_robot().send_line(command),
+            format!("ok {command}")
+        );
         let upper_case_line = format!("  {}\t", command.to_uppercase());
         assert_eq!(
-            wake_odd_robot().send_line(&upper_case_line),
+            wake_asymmetric_robot().send_line(&upper_case_line),
             format!("ok {command}")
         );
     }
@@ -72,7 +75,7 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
 
 #[test]
 fn help_lists_every_gait_and_every_command_as_often_as_it_is_sent() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     let printed_lines = dialogue.send(b"help\r");
     let gaits_line = format!("# gaits: {}", GAIT_NAMES.join("|"));
     let words: Vec<&str> = Word::ALL.iter().map(|word| word.text()).collect();
@@ -126,7 +129,7 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
 
 /// Runs a robot, without reading its output, until the guard holds it.
 fn run_until_guard_holds() -> Dialogue {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("stray");
     for _ in 0..200 {
         dialogue.run_without_reader(1);
@@ -181,7 +184,7 @@ fn the_reason_for_a_hold_is_printed_even_if_stand_arrives_before_it_is_written()
 
 #[test]
 fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report() {
-    let mut dialogue = Dialogue::power_on(*Sample::odd());
+    let mut dialogue = Dialogue::power_on(*Sample::asymmetric());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
     // Every line is read as soon as it is written, until the first line of the help.
     let mut printed_lines = Vec::new();
@@ -230,7 +233,7 @@ fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report
 fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
     let unsafe_pose = "pose 95 90 309.64 226.18";
     for line in ["sway", "sway left", "stop", NEUTRAL_COMMAND, unsafe_pose] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.expect_accepted("rest");
         dialogue.expect_refused(line, "7 servos are resting, send stand first");
         for _ in 0..50 {
@@ -257,7 +260,7 @@ fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
 
 #[test]
 fn the_travel_of_a_pose_is_checked_before_its_margins() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.expect_refused("pose 400 1 1 1", "3 A1 reaches 61.37..215.36");
     dialogue.expect_refused("pose 132 47 200 226", "3 A3 reaches 235.64..18.64");
     let message = dialogue.send_line("pose 132.37 4 309.64 226.18");
@@ -270,7 +273,7 @@ fn the_travel_of_a_pose_is_checked_before_its_margins() {
 
 #[test]
 fn an_accepted_pose_is_reached_and_reported_to_a_hundredth_of_a_degree() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     for pose in ["130.00 50.00 311.00 224.50", "136.37 45.01 306.05 229.99"] {
         let line = format!("pose {pose}");
         dialogue.expect_accepted(&line);

@@ -3,8 +3,8 @@
 use super::*;
 use crate::sample::{HEALTHY_BOARD, Sample};
 
-fn odd_supplies() -> Supplies {
-    Sample::odd().supplies()
+fn sample_supplies() -> Supplies {
+    Sample::asymmetric().supplies()
 }
 
 /// Returns the state after power-on, with `boot` cancelled.
@@ -16,7 +16,7 @@ fn safety_without_boot() -> Safety {
 
 /// Checks a frame of a robot that stands still, without a `deadman` time.
 fn check_still_frame(safety: &mut Safety, health: &Health) -> Reaction {
-    safety.check_frame(health, &odd_supplies(), State::Still, 0)
+    safety.check_frame(health, &sample_supplies(), State::Still, 0)
 }
 
 /// Returns the health of a board with this supply voltage of the chip, and 6 V at the servos' rail.
@@ -116,7 +116,7 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
 
 #[test]
 fn a_gait_ends_once_no_command_has_been_received_for_the_time_of_deadman_and_no_sooner() {
-    let supplies = odd_supplies();
+    let supplies = sample_supplies();
     for deadman_ms in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = safety_without_boot();
         for _ in 0..10 {
@@ -143,7 +143,7 @@ fn a_gait_ends_once_no_command_has_been_received_for_the_time_of_deadman_and_no_
 #[test]
 fn without_deadman_or_gait_silence_is_not_a_fault() {
     let mut safety = safety_without_boot();
-    let supplies = odd_supplies();
+    let supplies = sample_supplies();
     for _ in 0..5000 {
         for (state, deadman_ms) in [
             (State::Walking, 0),
@@ -162,7 +162,7 @@ fn a_gait_that_boot_starts_ends_only_after_the_time_of_deadman() {
     let mut state = State::Still;
     let mut boot_frame = 0;
     for frame in 1..400 {
-        match safety.check_frame(&HEALTHY_BOARD, &odd_supplies(), state, 1000) {
+        match safety.check_frame(&HEALTHY_BOARD, &sample_supplies(), state, 1000) {
             Reaction::Boot => (state, boot_frame) = (State::Walking, frame),
             Reaction::None => {}
             reaction => {

@@ -118,36 +118,44 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
 
 #[test]
 fn after_six_worse_readings_the_level_nearest_to_the_current_one_counts() {
-    for (usual_volts, odd_volts, level) in [
+    for (usual_volts, outlier_volts, level) in [
         (4.45, 3.5, Level::Slow),
         (4.25, 3.5, Level::Stop),
         (3.5, 4.45, Level::Slow),
     ] {
-        for odd_frame in 0..6 {
+        for outlier_frame in 0..6 {
             let mut supply = Supply::default();
             for frame in 0..6 {
-                let volts = if frame == odd_frame {
-                    odd_volts
+                let volts = if frame == outlier_frame {
+                    outlier_volts
                 } else {
                     usual_volts
                 };
                 supply.add_reading(reading_at(volts, 0.0), &SUPPLIES);
             }
-            assert_eq!(supply.level(), level, "{odd_volts} V in frame {odd_frame}");
+            assert_eq!(
+                supply.level(),
+                level,
+                "{outlier_volts} V in frame {outlier_frame}"
+            );
         }
     }
 }
 
 #[test]
 fn after_fifty_better_readings_the_level_nearest_to_the_current_one_counts() {
-    for odd_frame in 0..50 {
+    for outlier_frame in 0..50 {
         let mut supply = Supply::default();
         measure_board_until_change(&mut supply, 4.2);
         for frame in 0..50 {
-            let volts = if frame == odd_frame { 4.5 } else { 5.0 };
+            let volts = if frame == outlier_frame { 4.5 } else { 5.0 };
             supply.add_reading(reading_at(volts, 0.0), &SUPPLIES);
         }
-        assert_eq!(supply.level(), Level::Slow, "4.5 V in frame {odd_frame}");
+        assert_eq!(
+            supply.level(),
+            Level::Slow,
+            "4.5 V in frame {outlier_frame}"
+        );
     }
 }
 

@@ -8,12 +8,12 @@ use crate::numbers::calibration::NeededTravel;
 use crate::numbers::section::write_checksum;
 use crate::sample::Sample;
 
-/// The section of [`Sample::odd`] with changed numbers.
+/// The section of [`Sample::asymmetric`] with changed numbers.
 struct ChangedSection(Vec<u8>);
 
 impl ChangedSection {
     fn new() -> Self {
-        Self(Sample::odd().content.section_bytes())
+        Self(Sample::asymmetric().content.section_bytes())
     }
 
     fn with_word(mut self, offset: u16, word: u16) -> Self {
@@ -40,7 +40,7 @@ impl ChangedSection {
     }
 }
 
-/// True if the guard accepts the section of [`Sample::odd`] with this word at that offset.
+/// True if the guard accepts the section of [`Sample::asymmetric`] with this word at that offset.
 fn is_accepted_with(offset: u16, word: u16) -> bool {
     ChangedSection::new().with_word(offset, word).is_accepted()
 }
@@ -50,7 +50,7 @@ fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
     // D0 and D1 are the serial line, D13 is the LED.
     let is_usable_pin = |pin: u8| (2..=12).contains(&pin) || (14..=19).contains(&pin);
     let other_pins_of = |servo: u16| {
-        let pins = Sample::odd().content.pins;
+        let pins = Sample::asymmetric().content.pins;
         (0..4)
             .filter(move |index| *index != usize::from(servo))
             .map(move |index| pins[index])
@@ -75,7 +75,7 @@ fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
             }
         }
     }
-    let pins = Sample::odd().content.pins;
+    let pins = Sample::asymmetric().content.pins;
     for rail_pin in 0..=u8::MAX {
         let is_valid_rail = (14..=19).contains(&rail_pin) && !pins.contains(&rail_pin);
         assert_eq!(
@@ -90,7 +90,7 @@ fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
 fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits() {
     for servo in 0..4 {
         let is_accepted_with_change = |change: &dyn Fn(&mut Calibration)| {
-            let mut content = Sample::odd().content.clone();
+            let mut content = Sample::asymmetric().content.clone();
             let calibration = &mut content.calibration[servo];
             calibration.gain = 11_395;
             (calibration.travel_min, calibration.travel_max) = (Sweep(-9_000), Sweep(9_000));
@@ -130,7 +130,7 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
         }
         // The neutral angle is within the travel, even if no gait needs it.
         for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {
-            let mut content = Sample::odd().content.clone();
+            let mut content = Sample::asymmetric().content.clone();
             let [min, max] = travel.map(Sweep);
             let calibration = &mut content.calibration[servo];
             (calibration.travel_min, calibration.travel_max) = (min, max);
@@ -141,7 +141,7 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
                 "{travel:?}"
             );
         }
-        let needed_travel = Sample::odd().content.needed_travel[servo];
+        let needed_travel = Sample::asymmetric().content.needed_travel[servo];
         for (excess, is_within) in [(0, true), (1, false)] {
             assert_eq!(
                 is_accepted_with_change(
@@ -162,7 +162,7 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
 #[test]
 fn a_section_whose_neutral_pose_is_unsafe_is_refused() {
     for change in 0..3 {
-        let mut content = Sample::odd().content.clone();
+        let mut content = Sample::asymmetric().content.clone();
         assert!(ChangedSection(content.section_bytes()).is_accepted());
         match change {
             0 => content.limits.leg.0 = i16::MAX,

@@ -218,7 +218,7 @@ fn a_sample_that_is_safe_only_in_floating_point_does_not_stand_safely() {
 
 /// Returns a robot and the clearance of its neutral pose, which is far from every limit.
 fn measure_safe_robot() -> (Sample, Clearance) {
-    let robot = Sample::odd();
+    let robot = Sample::asymmetric();
     let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
     assert_eq!(clearance.first_hazard(&robot), None);
     (robot, clearance)
@@ -314,7 +314,7 @@ fn the_smallest_margin_is_found_at_every_index() {
 
 #[test]
 fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
-    let robot = Sample::odd();
+    let robot = Sample::asymmetric();
     for servo in 0..4 {
         // The change point is on the x axis of the chassis. Beyond it, the crank's y is negative in the frame of the
         // leg's five-bar.

@@ -11,8 +11,8 @@ use crate::numbers::units::Sweep;
 use crate::sample::Sample;
 use crate::virtual_board::Eeprom;
 
-fn odd_robot() -> Sample {
-    Sample::odd()
+fn asymmetric_robot() -> Sample {
+    Sample::asymmetric()
 }
 
 /// Makes settings all of whose values depend on `n`, except `boot`.
@@ -62,7 +62,7 @@ fn clear_save_number(settings: &Settings) -> Settings {
 
 #[test]
 fn each_of_a_thousand_saves_is_loaded_again() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     assert_eq!(
         load_settings(&robot, &eeprom),
@@ -85,7 +85,7 @@ fn each_of_a_thousand_saves_is_loaded_again() {
 
 #[test]
 fn unchanged_bytes_are_not_written_again() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     save_settings(&make_settings(&robot, 3), &mut eeprom);
     eeprom.log.clear();
@@ -107,7 +107,7 @@ fn torn_values(old: u8, new: u8) -> impl Iterator<Item = u8> {
 
 #[test]
 fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     for save_count in 0..4 {
         let mut eeprom = Eeprom::blank();
         let mut old_settings = Settings::of(&robot);
@@ -144,7 +144,7 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
 
 #[test]
 fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     save_settings(&make_settings(&robot, 1), &mut eeprom);
     save_settings(&make_settings(&robot, 2), &mut eeprom);
@@ -163,7 +163,7 @@ fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
 
 #[test]
 fn any_flipped_bit_leaves_the_last_settings_or_the_previous_ones() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     let previous_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     let last_settings = save_settings(&make_settings(&robot, 2), &mut eeprom);
@@ -189,7 +189,7 @@ fn any_flipped_bit_leaves_the_last_settings_or_the_previous_ones() {
 
 #[test]
 fn any_flipped_bit_leaves_the_only_copy_or_the_settings_of_robot_toml() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     let only_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..8 * 1024 {
@@ -209,7 +209,7 @@ fn any_flipped_bit_leaves_the_only_copy_or_the_settings_of_robot_toml() {
 
 #[test]
 fn settings_for_other_servos_or_of_another_format_are_not_used() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     save_settings(&make_settings(&robot, 1), &mut eeprom);
     let other_robot = robot
@@ -229,7 +229,7 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
 
 #[test]
 fn every_bit_of_the_servos_hash_distinguishes_other_servos() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     save_settings(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..32 {
@@ -247,7 +247,7 @@ fn every_bit_of_the_servos_hash_distinguishes_other_servos() {
 
 #[test]
 fn settings_with_which_a_gait_would_leave_the_travel_are_not_used() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     let mut narrow_settings = make_settings(&robot, 1);
     let mut adjustment = narrow_settings.adjustment(Servo::A3);
@@ -260,7 +260,7 @@ fn settings_with_which_a_gait_would_leave_the_travel_are_not_used() {
 
 #[test]
 fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_is_gone() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     let saved_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     assert_eq!(
@@ -287,7 +287,7 @@ fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_is_gone() {
 
 #[test]
 fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut eeprom = Eeprom::blank();
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
@@ -315,7 +315,7 @@ fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
 
 #[test]
 fn random_bytes_in_the_memory_are_not_read_as_settings() {
-    let robot = odd_robot();
+    let robot = asymmetric_robot();
     let mut state = 1u32;
     for _ in 0..2000 {
         let bytes: [u8; 1024] = core::array::from_fn(|index| {

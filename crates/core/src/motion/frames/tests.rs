@@ -21,9 +21,9 @@ const FRAMES_TO_WAKE: u32 = 20;
 const TRANSITION_FRAMES: u32 = 150;
 
 impl Motion {
-    /// Returns the motion of [`Sample::odd`], awake and in `stand` at full pace.
+    /// Returns the motion of [`Sample::asymmetric`], awake and in `stand` at full pace.
     fn standing() -> Self {
-        Self::awake(Sample::odd())
+        Self::awake(Sample::asymmetric())
     }
 
     /// Returns the motion of a robot that is awake and in `stand` at full pace.
@@ -369,7 +369,7 @@ fn a_stopped_gait_restarts_at_its_first_pose() {
 
 #[test]
 fn frames_are_counted_from_power_on_even_while_the_robot_rests() {
-    let mut motion = Motion::new(*Sample::odd());
+    let mut motion = Motion::new(*Sample::asymmetric());
     motion.run(30);
     motion.rest();
     motion.run(12);

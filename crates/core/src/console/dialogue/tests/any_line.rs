@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     let message = "err 6 a line has at most 63 characters";
     assert_eq!(dialogue.send_line(&"stand".repeat(13)), message);
     assert_eq!(dialogue.send_line("stand"), "ok stand");
@@ -23,7 +23,7 @@ const REFUSED_LINES: [&str; 9] = [
     "pose 170 130 309.64 226.18",
 ];
 
-/// Random bytes as a person, a faulty program or a broken cable sends them.
+/// Yields random bytes such as a person, a faulty program or a broken cable sends.
 fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
     let mut lines = GAIT_NAMES.to_vec();
     lines.extend([
@@ -65,7 +65,7 @@ proptest! {
         bytes in any_bytes(),
         frames_between in 0u32..3,
     ) {
-        let (mut burst_dialogue, mut bytewise_dialogue) = (wake_odd_robot(), wake_odd_robot());
+        let (mut burst_dialogue, mut bytewise_dialogue) = (wake_asymmetric_robot(), wake_asymmetric_robot());
         let final_lines_of = |lines: Vec<String>| -> Vec<String> {
             lines.into_iter().filter(|line| is_answer(line)).collect()
         };
@@ -89,7 +89,7 @@ proptest! {
         speed in 10u8..=100,
         line in prop::sample::select(REFUSED_LINES.to_vec()),
     ) {
-        let [mut tested_dialogue, mut undisturbed_dialogue] = [(); 2].map(|()| wake_odd_robot());
+        let [mut tested_dialogue, mut undisturbed_dialogue] = [(); 2].map(|()| wake_asymmetric_robot());
         for dialogue in [&mut tested_dialogue, &mut undisturbed_dialogue] {
             dialogue.send_line(&format!("speed {speed}"));
             for (gait, frames) in &history {

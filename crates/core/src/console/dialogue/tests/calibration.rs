@@ -13,7 +13,7 @@ fn read_cal(dialogue: &mut Dialogue) -> Vec<String> {
 
 #[test]
 fn cal_prints_all_settings_and_no_state() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     let initial_lines = read_cal(&mut dialogue);
     assert_eq!(initial_lines.len(), 7);
     assert!(initial_lines[0].starts_with("# A1 trim 0.00 limit 61.37 215.36 dir "));
@@ -61,14 +61,14 @@ fn cal_prints_all_settings_and_no_state() {
 
 #[test]
 fn only_saved_settings_survive_a_loss_of_power() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("trim 2 4");
     dialogue.expect_accepted("save");
     let saved_lines = read_cal(&mut dialogue);
     dialogue.send_line("trim 2 5");
     assert_ne!(read_cal(&mut dialogue), saved_lines);
     let mut restarted_dialogue = Dialogue::with_memory(
-        *Sample::odd(),
+        *Sample::asymmetric(),
         dialogue.board.memory.clone(),
         Restart::default(),
     );
@@ -85,7 +85,7 @@ fn only_saved_settings_survive_a_loss_of_power() {
 
 #[test]
 fn load_before_the_first_save_is_refused_and_so_is_save_to_a_worn_memory() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
     dialogue.board.memory.is_worn = true;
     dialogue.expect_refused("save", "9 the memory does not keep what is written");
@@ -103,7 +103,7 @@ fn a_change_of_calibration_moves_only_its_servo_and_within_the_slew_limit() {
         "load",
         "factory",
     ] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         if change == "factory" {
             dialogue.send_line("trim 1 15");
         }
@@ -142,7 +142,7 @@ fn a_change_of_calibration_moves_only_its_servo_and_within_the_slew_limit() {
 
 #[test]
 fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway");
     dialogue.run_frames(120);
     let phase_before = dialogue.motion().phase();
@@ -159,7 +159,7 @@ fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
 
 #[test]
 fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused_and_change_nothing() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     let lines_before = read_cal(&mut dialogue);
     for line in [
         "limit 1 140 215",
@@ -185,7 +185,7 @@ fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused_and_change_nothing() 
 
 #[test]
 fn a_factory_or_load_command_that_is_refused_changes_nothing() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     for line in [
         "trim 1 10",
         "limit 1 61.37 149",
@@ -199,14 +199,14 @@ fn a_factory_or_load_command_that_is_refused_changes_nothing() {
     let lines_before = read_cal(&mut dialogue);
     dialogue.expect_refused("load", "3 A1 would not reach where it is");
     assert_eq!(read_cal(&mut dialogue), lines_before);
-    let mut trimmed_dialogue = wake_odd_robot();
+    let mut trimmed_dialogue = wake_asymmetric_robot();
     trimmed_dialogue.send_line("trim 3 4");
     let lines_before = read_cal(&mut trimmed_dialogue);
     trimmed_dialogue.board.memory.bytes_mut()[0] = 0;
     trimmed_dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
     assert_eq!(read_cal(&mut trimmed_dialogue), lines_before);
     // Settings for other servos are not loaded, and the current ones stay.
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("save");
     trimmed_dialogue.board.memory = dialogue.board.memory.clone();
     trimmed_dialogue.board.memory.bytes_mut()[44] ^= 1;
@@ -215,7 +215,7 @@ fn a_factory_or_load_command_that_is_refused_changes_nothing() {
     // A trim shifts the travel: the pose below is within the shifted travel, but not within that of robot.toml.
     let narrow_max = Sweep(2200);
     let robot =
-        Sample::odd().with_changes(|content| content.calibration[0].travel_max = narrow_max);
+        Sample::asymmetric().with_changes(|content| content.calibration[0].travel_max = narrow_max);
     let mut narrow_dialogue = wake_robot(robot);
     narrow_dialogue.expect_accepted("trim 1 -5");
     narrow_dialogue.expect_accepted("limit 1 67 149");
@@ -232,8 +232,8 @@ fn a_factory_or_load_command_that_is_refused_changes_nothing() {
 fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits() {
     for servo in Servo::ALL {
         for (excess_steps, is_loaded) in [(1, true), (-1, false)] {
-            let mut dialogue = wake_odd_robot();
-            let robot = Sample::odd();
+            let mut dialogue = wake_asymmetric_robot();
+            let robot = Sample::asymmetric();
             let mut settings = Settings::of(&robot);
             let mut adjustment = settings.adjustment(servo);
             adjustment.travel_min = Sweep(robot.needed_travel(servo).min.0 - excess_steps);
@@ -257,7 +257,7 @@ fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits()
 
 #[test]
 fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
         dialogue.send_line(line);
     }
@@ -265,7 +265,7 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
     dialogue.expect_refused("center 1", "2 ");
     dialogue.expect_accepted("center");
     dialogue.run_frames(200);
-    let neutral = Sample::odd()
+    let neutral = Sample::asymmetric()
         .calibration()
         .map(|servo| servo.neutral_width.0);
     for (width, neutral) in run_frame_and_read_widths(&mut dialogue)
@@ -289,7 +289,7 @@ fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
     let make_robot = || {
         names
             .iter()
-            .fold(Sample::odd(), |robot, name| robot.with_gait(name))
+            .fold(Sample::asymmetric(), |robot, name| robot.with_gait(name))
     };
     for name in names {
         let mut dialogue = Dialogue::power_on(*make_robot());
@@ -312,7 +312,7 @@ fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
 #[test]
 fn the_servo_whose_saved_travel_is_too_narrow_for_the_gaits_is_found() {
     for servo in Servo::ALL {
-        let robot = Sample::odd();
+        let robot = Sample::asymmetric();
         let mut settings = Settings::of(&robot);
         let mut adjustment = settings.adjustment(servo);
         adjustment.travel_max = Sweep(robot.needed_travel(servo).max.0 - 1);
@@ -323,7 +323,7 @@ fn the_servo_whose_saved_travel_is_too_narrow_for_the_gaits_is_found() {
 
 #[test]
 fn limits_that_exclude_the_pose_the_robot_is_about_to_take_are_refused() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway left");
     dialogue.run_frames(150);
     // No gait reaches this pose. The gait brakes first, so the move to the pose has not begun yet.
@@ -343,7 +343,7 @@ fn limits_that_exclude_the_pose_the_robot_is_about_to_take_are_refused() {
 
 #[test]
 fn after_a_change_of_calibration_a_gait_accelerates_gradually_to_its_full_pace() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway left");
     dialogue.run_frames(150);
     let full_advance = run_frame_and_measure_advance(&mut dialogue);

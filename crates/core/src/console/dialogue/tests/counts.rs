@@ -8,7 +8,7 @@ const LONG_FRAMES: u32 = 400;
 #[test]
 fn a_counted_gait_ends_with_one_line_and_the_robot_holds_its_last_pose() {
     for name in ["sway", "sway left", "back"] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         assert_eq!(
             dialogue.send_line(&format!("{name}  2")),
             format!("ok {name}  2")
@@ -26,7 +26,7 @@ fn a_counted_gait_ends_with_one_line_and_the_robot_holds_its_last_pose() {
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
         assert_eq!(dialogue.run_frame(), held_pulses);
     }
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway");
     assert!(
         dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
@@ -36,7 +36,7 @@ fn a_counted_gait_ends_with_one_line_and_the_robot_holds_its_last_pose() {
 
 #[test]
 fn a_wrong_count_is_refused_and_changes_nothing() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     let message = "a gait takes a count, 1..999";
     for line in ["sway 0", "sway 1000", "sway 2x", "sway 1 1"] {
         dialogue.expect_refused(line, &format!("2 {message}"));
@@ -50,7 +50,7 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
 #[test]
 fn another_motion_or_a_fault_ends_a_counted_gait_without_done() {
     let start_counted_gait = || {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("sway 2");
         dialogue.run_frames(30);
         dialogue
@@ -76,7 +76,7 @@ fn another_motion_or_a_fault_ends_a_counted_gait_without_done() {
         "{printed_lines:?}"
     );
     assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
-    let mut unsafe_dialogue = wake_odd_robot();
+    let mut unsafe_dialogue = wake_asymmetric_robot();
     unsafe_dialogue.send_line("stray 9");
     let printed_lines = unsafe_dialogue.run_frames(5 * LONG_FRAMES);
     assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
@@ -86,7 +86,7 @@ fn another_motion_or_a_fault_ends_a_counted_gait_without_done() {
 #[test]
 fn a_low_supply_slows_a_counted_gait_and_does_not_end_it() {
     let count_frames_until_done = |supply_mv: Option<u16>| {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         if let Some(supply_mv) = supply_mv {
             set_supply(&mut dialogue, supply_mv.into());
             dialogue.run_frames(40);
@@ -111,7 +111,7 @@ fn a_low_supply_slows_a_counted_gait_and_does_not_end_it() {
 #[test]
 fn a_reset_ends_a_counted_gait() {
     for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("sway 2");
         dialogue.run_frames(60);
         dialogue.reset(cause);

@@ -13,9 +13,9 @@ pub(super) const WAKING_FRAMES: u32 = 21;
 /// A running robot that is commanded through its console.
 pub(super) type Dialogue = RunningRobot;
 
-/// Powers on the odd sample robot, reads its banner, and runs it until it is awake.
-pub(super) fn wake_odd_robot() -> Dialogue {
-    wake_robot(Sample::odd())
+/// Powers on the asymmetric sample robot, reads its banner, and runs it until it is awake.
+pub(super) fn wake_asymmetric_robot() -> Dialogue {
+    wake_robot(Sample::asymmetric())
 }
 
 /// Powers on a robot, reads its banner, and runs it until it is awake.

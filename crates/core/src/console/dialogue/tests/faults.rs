@@ -4,13 +4,13 @@ use super::*;
 
 #[test]
 fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     for boot in ["sway left", "rest"] {
         dialogue.send_line(&format!("boot {boot}"));
         dialogue.expect_accepted("save");
         let eeprom = dialogue.board.memory.clone();
         let mut unattended_dialogue =
-            Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
+            Dialogue::with_memory(*Sample::asymmetric(), eeprom.clone(), Restart::default());
         let printed_lines = unattended_dialogue.run_frames(149);
         assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
         assert_eq!(
@@ -26,7 +26,7 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
             boot.replace(' ', "-")
         );
         let mut interrupted_dialogue =
-            Dialogue::with_memory(*Sample::odd(), eeprom, Restart::default());
+            Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::default());
         interrupted_dialogue.run_frames(100);
         interrupted_dialogue.board.send(b" ");
         interrupted_dialogue.run_frames(400);
@@ -36,7 +36,7 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
 
 #[test]
 fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("deadman 400");
     dialogue.send_line("sway");
     for _ in 0..30 {
@@ -68,7 +68,7 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
         b"nonsense",
     ];
     for line in lines {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("deadman 400");
         dialogue.send_line("sway");
         for _ in 0..4 {
@@ -85,7 +85,7 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
 fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
     for (deadman_ms, wait_frames, is_obeyed) in [(400, 19, true), (400, 20, false), (0, 2000, true)]
     {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line(&format!("deadman {deadman_ms}"));
         dialogue.board.send(b"sway 1");
         dialogue.run_frames(wait_frames);
@@ -109,7 +109,7 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
 
 #[test]
 fn each_byte_of_a_line_restarts_the_time_after_which_the_line_is_dropped() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("deadman 400");
     for byte in b"sway 1" {
         dialogue.board.send(&[*byte]);
@@ -122,7 +122,7 @@ fn each_byte_of_a_line_restarts_the_time_after_which_the_line_is_dropped() {
 
 #[test]
 fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway");
     dialogue.run_frames(150);
     let measure_pace = |dialogue: &mut Dialogue| {
@@ -172,7 +172,7 @@ fn held_stance(sweeps: [i16; 4]) -> Stance {
         is_resting: false,
         frames_awake: crate::motion::AWAKE_FRAMES,
         pose,
-        sent_pulses: pose.pulses(&Sample::odd().calibration()),
+        sent_pulses: pose.pulses(&Sample::asymmetric().calibration()),
     }
 }
 
@@ -190,7 +190,7 @@ fn restart_after_hang(count: u8, stance: Stance) -> Restart {
 fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
     let stance = held_stance([400, -300, 200, -100]);
     let mut dialogue = Dialogue::with_memory(
-        *Sample::odd(),
+        *Sample::asymmetric(),
         Eeprom::blank(),
         restart_after_hang(3, stance),
     );
@@ -223,7 +223,8 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
                 cause,
                 ..restart_after_hang(1, held_stance(sweeps))
             };
-            let mut dialogue = Dialogue::with_memory(*Sample::odd(), Eeprom::blank(), restart);
+            let mut dialogue =
+                Dialogue::with_memory(*Sample::asymmetric(), Eeprom::blank(), restart);
             for _ in 0..140 {
                 assert_eq!(dialogue.run_frame(), Pulses::default());
             }
@@ -237,21 +238,24 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
 
 #[test]
 fn after_a_reset_in_a_pose_outside_the_saved_limits_the_robot_rests() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     assert!(dialogue.send_line("limit 1 115 160").starts_with("ok "));
     dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
     // A1 at its neutral 132.37 deg plus 30 deg is safe, but beyond the saved limit of 160 deg.
     let wide_stance = held_stance([5461, 0, 0, 0]);
     let mut unlimited_dialogue = Dialogue::with_memory(
-        *Sample::odd(),
+        *Sample::asymmetric(),
         Eeprom::blank(),
         restart_after_hang(1, wide_stance),
     );
     unlimited_dialogue.run_frames(10);
     assert_eq!(unlimited_dialogue.status_value("gait"), "stop");
-    let mut narrow_dialogue =
-        Dialogue::with_memory(*Sample::odd(), eeprom, restart_after_hang(1, wide_stance));
+    let mut narrow_dialogue = Dialogue::with_memory(
+        *Sample::asymmetric(),
+        eeprom,
+        restart_after_hang(1, wide_stance),
+    );
     narrow_dialogue.run_frames(10);
     assert_eq!(narrow_dialogue.status_value("gait"), "rest");
 }
@@ -264,7 +268,7 @@ fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset()
         ("scale 2 12", 1, Cause::External),
         ("dir 3 -", 2, Cause::BrownOut),
     ] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("pose 140 50 311 224.5");
         dialogue.run_frames(100);
         assert!(dialogue.send_line(setting).starts_with("ok "), "{setting}");
@@ -281,7 +285,7 @@ fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset()
                     continue;
                 }
                 let max_change =
-                    calibration[index].max_width_change(Sample::odd().slew().per_frame);
+                    calibration[index].max_width_change(Sample::asymmetric().slew().per_frame);
                 let change = pulse.0.abs_diff(last_pulse.0);
                 assert!(
                     change <= max_change + 1,
@@ -301,7 +305,7 @@ fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset()
 fn after_a_reset_while_servos_wake_they_still_wake_one_at_a_time() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         for frames in 1..25 {
-            let mut dialogue = wake_odd_robot();
+            let mut dialogue = wake_asymmetric_robot();
             dialogue.send_line("rest");
             dialogue.run_frames(10);
             dialogue.send_line("stand");
@@ -332,7 +336,7 @@ fn after_a_reset_while_servos_wake_they_still_wake_one_at_a_time() {
 #[test]
 fn after_a_reset_a_resting_robot_rests_until_boot_which_a_hang_cancels() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("pose 140 50 311 224.5");
         dialogue.run_frames(150);
         dialogue.send_line("rest");
@@ -359,7 +363,7 @@ fn after_a_reset_a_resting_robot_rests_until_boot_which_a_hang_cancels() {
 #[test]
 fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("pose 140 50 311 224.5");
         dialogue.run_frames(150);
         dialogue.board.memory.write_delay = 4;
@@ -370,7 +374,8 @@ fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
         dialogue.run_frames(100);
         let eeprom = dialogue.board.memory.clone();
-        let mut restarted_dialogue = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
+        let mut restarted_dialogue =
+            Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::NONE);
         assert_eq!(
             restarted_dialogue.status_value("pose"),
             "140.00,50.00,311.00,224.50"
@@ -386,7 +391,7 @@ fn three_brown_outs_or_button_resets_in_a_row_end_in_rest_until_stand_is_sent() 
         (true, Cause::BrownOut),
         (true, Cause::External),
     ] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.board.has_boot_loader = has_boot_loader;
         dialogue.read_lines();
         for reset_count in 1..=5 {
@@ -419,7 +424,7 @@ fn three_brown_outs_or_button_resets_in_a_row_end_in_rest_until_stand_is_sent() 
 
 #[test]
 fn resets_that_are_each_followed_by_a_line_do_not_count_as_a_weak_supply() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.board.has_boot_loader = true;
     for _ in 0..20 {
         dialogue.reset(Cause::External);
@@ -431,7 +436,7 @@ fn resets_that_are_each_followed_by_a_line_do_not_count_as_a_weak_supply() {
 
 #[test]
 fn a_line_before_all_servos_are_awake_does_not_clear_the_count_of_resets() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.board.has_boot_loader = true;
     for reset_count in 1..=3 {
         dialogue.reset(Cause::External);
@@ -445,7 +450,7 @@ fn a_line_before_all_servos_are_awake_does_not_clear_the_count_of_resets() {
 
 #[test]
 fn brown_outs_half_a_minute_apart_do_not_count_as_consecutive() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     for _ in 0..6 {
         dialogue.reset(Cause::BrownOut);
         dialogue.run_frames(1501);

@@ -30,7 +30,7 @@ const LONG_FRAMES: u32 = 600;
 
 /// Starts a robot on a routine of these steps, repeated this many times.
 fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", rounds, steps));
+    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", rounds, steps));
     dialogue.expect_accepted("patrol");
     dialogue
 }
@@ -118,7 +118,7 @@ fn a_bouncing_contact_counts_as_closed_once_it_stays_closed_for_three_frames() {
 
 #[test]
 fn a_stuck_button_does_not_start_the_robot_until_it_is_released_and_pressed_again() {
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL_STEPS));
+    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 1, &PATROL_STEPS));
     set_contact(&mut dialogue, BUTTON, true);
     dialogue.expect_accepted("patrol");
     assert_eq!(
@@ -335,11 +335,11 @@ fn on_a_low_supply_the_contact_still_ends_the_walk() {
 
 #[test]
 fn a_routine_started_by_boot_waits_for_its_contacts_without_limit_despite_deadman() {
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &PATROL_STEPS));
+    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 0, &PATROL_STEPS));
     for line in ["boot patrol", "deadman 200", "save"] {
         dialogue.expect_accepted(line);
     }
-    let robot = *Sample::odd().with_routine("patrol", 0, &PATROL_STEPS);
+    let robot = *Sample::asymmetric().with_routine("patrol", 0, &PATROL_STEPS);
     let mut unattended_dialogue =
         Dialogue::with_memory(robot, dialogue.board.memory.clone(), Restart::default());
     let lines = unattended_dialogue.run_frames(10 * LONG_FRAMES);
@@ -355,7 +355,7 @@ fn a_routine_started_by_boot_waits_for_its_contacts_without_limit_despite_deadma
 
 #[test]
 fn a_pin_gets_its_pull_up_when_its_contact_is_first_waited_for() {
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 1, &PATROL_STEPS));
+    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 1, &PATROL_STEPS));
     assert_eq!(dialogue.board.pulled_up_pins, 0);
     dialogue.expect_accepted("patrol");
     dialogue.run_frames(10);
@@ -370,9 +370,9 @@ fn a_pin_gets_its_pull_up_when_its_contact_is_first_waited_for() {
 
 #[test]
 fn only_a_free_pin_of_the_board_gets_a_pull_up() {
-    let pins = Sample::odd().content.pins;
+    let pins = Sample::asymmetric().content.pins;
     for pin in 0..=127 {
-        let robot = Sample::odd().with_routine("patrol", 1, &PATROL_STEPS);
+        let robot = Sample::asymmetric().with_routine("patrol", 1, &PATROL_STEPS);
         let robot = robot.with_changes(|content| {
             let button = content.steps.iter_mut().find(|step| step.kind == UNTIL);
             button.expect("the patrol waits for the button").gait = pin;
@@ -408,7 +408,7 @@ fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() 
 
 #[test]
 fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
-    let robot = Sample::odd().with_routine("patrol", 3, &PATROL_STEPS);
+    let robot = Sample::asymmetric().with_routine("patrol", 3, &PATROL_STEPS);
     let robot = robot.with_changes(|content| {
         let routine = content.gaits.last_mut().expect("the robot has a routine");
         routine.channels[3].offset = 2;

@@ -6,12 +6,13 @@ use super::*;
 
 #[test]
 fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("rest");
     dialogue.run_frames(2);
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     let eeprom = dialogue.board.memory.clone();
-    let mut restarted_dialogue = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
+    let mut restarted_dialogue =
+        Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::NONE);
     let write_count = restarted_dialogue.board.memory.log.len();
     for _ in 0..60 {
         restarted_dialogue.read_lines();
@@ -55,7 +56,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
 
 #[test]
 fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("deadman 1000");
     dialogue.expect_accepted("save");
     dialogue.send_line("deadman 2000");
@@ -78,7 +79,7 @@ fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
         "{printed_lines:?}"
     );
     let eeprom = dialogue.board.memory.clone();
-    let restarted_dialogue = Dialogue::with_memory(*Sample::odd(), eeprom, Restart::NONE);
+    let restarted_dialogue = Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::NONE);
     assert_eq!(
         restarted_dialogue.main.control().settings().deadman_ms(),
         1000
@@ -87,7 +88,7 @@ fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
 
 #[test]
 fn a_repeated_rest_writes_nothing_and_a_worn_cell_is_reported() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("rest");
     dialogue.run_frames(2);
     let write_count = dialogue.board.memory.log.len();
@@ -110,13 +111,13 @@ fn a_repeated_rest_writes_nothing_and_a_worn_cell_is_reported() {
 
 #[test]
 fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then_stands() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("pose 140 50 311 224.5");
     dialogue.run_frames(150);
     dialogue.send_line("rest");
     let eeprom = dialogue.board.memory.clone();
     let mut restarted_dialogue =
-        Dialogue::with_memory(*Sample::odd(), eeprom.clone(), Restart::default());
+        Dialogue::with_memory(*Sample::asymmetric(), eeprom.clone(), Restart::default());
     restarted_dialogue.read_lines();
     assert_eq!(
         restarted_dialogue.status_value("pose"),
@@ -144,7 +145,7 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
     assert_eq!(restarted_dialogue.status_value("pose"), neutral_pose_text());
     // The rest pose of a robot that has moved since is no longer recorded.
     let moved_dialogue = Dialogue::with_memory(
-        *Sample::odd(),
+        *Sample::asymmetric(),
         restarted_dialogue.board.memory.clone(),
         Restart::default(),
     );
@@ -153,7 +154,7 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
 
 #[test]
 fn the_rest_pose_is_erased_before_the_first_pulse() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("rest");
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     dialogue.board.send(b"stand\r");
@@ -165,7 +166,7 @@ fn the_rest_pose_is_erased_before_the_first_pulse() {
 
 #[test]
 fn a_save_right_after_the_start_waits_at_most_half_a_second_for_the_supply() {
-    let mut dialogue = Dialogue::power_on(*Sample::odd());
+    let mut dialogue = Dialogue::power_on(*Sample::asymmetric());
     dialogue.read_lines();
     dialogue.board.send(b"save\r");
     let printed_lines = dialogue.run_frames(5);
@@ -175,7 +176,7 @@ fn a_save_right_after_the_start_waits_at_most_half_a_second_for_the_supply() {
     );
     assert_eq!(dialogue.run_frames(15), ["ok save"]);
     let mut unmeasured_dialogue =
-        Dialogue::with_flash(Sample::odd().section(), VirtualBoard::default());
+        Dialogue::with_flash(Sample::asymmetric().section(), VirtualBoard::default());
     unmeasured_dialogue.read_lines();
     unmeasured_dialogue.board.send(b"save\r");
     assert_eq!(

@@ -19,9 +19,10 @@ const PATROL_STEPS: [(u8, &str, u16); 5] = [
 /// More frames than a round of the routine takes.
 const LONG_FRAMES: u32 = 1_500;
 
-/// Returns the odd robot with the routine `patrol`, which repeats its steps `rounds` times, or endlessly if that is 0.
+/// Returns the asymmetric robot with the routine `patrol`, which repeats its steps `rounds` times, or endlessly if that
+/// is 0.
 fn robot_with_routine(rounds: u16) -> Sample {
-    Sample::odd().with_routine("patrol", rounds, &PATROL_STEPS)
+    Sample::asymmetric().with_routine("patrol", rounds, &PATROL_STEPS)
 }
 
 /// Runs a robot for this many frames. Returns its gaits in order, each once per change, and the lines that it printed.
@@ -199,7 +200,7 @@ fn a_low_supply_slows_a_routine_and_does_not_end_it() {
 #[test]
 fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     let stray_steps = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 0, &stray_steps));
+    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 0, &stray_steps));
     dialogue.send_line("patrol");
     let (gaits, printed_lines) = run_recording_gaits(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
@@ -259,7 +260,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
         (REST, "stand", 50),
         (FRAMES, "stand", 100),
     ];
-    let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 2, &steps));
+    let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 2, &steps));
     dialogue.send_line("patrol");
     let (mut frames_without_pulses, mut pulsing_counts) = (0, Vec::new());
     let mut printed_lines = Vec::new();
@@ -285,7 +286,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
 fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
     let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
     let start_and_rest = || {
-        let mut dialogue = wake_robot(Sample::odd().with_routine("patrol", 2, &steps));
+        let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 2, &steps));
         dialogue.send_line("patrol");
         while !dialogue.motion().is_resting() {
             dialogue.run_frames(1);

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn status_reports_each_value_under_its_key() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.board.late_edges = 7;
     dialogue.board.count_lost_bytes(65_535);
     dialogue.run_frames(1);
@@ -37,7 +37,7 @@ fn status_reports_each_value_under_its_key() {
 
 #[test]
 fn a_voltage_is_left_out_until_it_is_measured() {
-    let mut dialogue = Dialogue::power_on(*Sample::odd());
+    let mut dialogue = Dialogue::power_on(*Sample::asymmetric());
     dialogue.read_lines();
     let line = dialogue.send_line("status");
     assert!(line.ends_with(" resets=0"), "{line}");
@@ -48,7 +48,7 @@ fn a_voltage_is_left_out_until_it_is_measured() {
 
 #[test]
 fn status_names_the_robots_activity() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     assert_eq!(dialogue.status_value("gait"), "stand");
     for (command, name) in [
         ("sway", "sway"),
@@ -67,7 +67,7 @@ fn status_names_the_robots_activity() {
 fn the_longest_possible_status_fits_a_line() {
     let name = "longest name of a gait that any robot may have..";
     assert_eq!(name.len(), crate::numbers::gaits::MAX_NAME_BYTES);
-    let robot = Sample::odd().with_gait(name);
+    let robot = Sample::asymmetric().with_gait(name);
     let mut dialogue = wake_robot(robot);
     dialogue.board.late_edges = u16::MAX;
     dialogue.board.count_lost_bytes(u16::MAX);
@@ -93,7 +93,7 @@ fn the_longest_possible_status_fits_a_line() {
 #[test]
 fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
     for interval in [1u32, 2, 7, 50] {
-        let mut dialogue = wake_odd_robot();
+        let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("sway");
         dialogue.send_line(&format!("watch {interval}"));
         let start_frame = dialogue.motion().frame_count();
@@ -117,7 +117,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
 
 #[test]
 fn watch_continues_at_rest_and_a_new_watch_starts_its_own_interval() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("watch 5");
     dialogue.send_line("rest");
     assert_eq!(dialogue.run_frames(50).len(), 10);
@@ -129,7 +129,7 @@ fn watch_continues_at_rest_and_a_new_watch_starts_its_own_interval() {
 
 #[test]
 fn several_unread_reports_are_written_as_one_and_watch_0_ends_the_reports() {
-    let mut dialogue = wake_odd_robot();
+    let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("watch 2");
     dialogue.run_without_reader(20);
     assert_eq!(dialogue.read_lines().len(), 1);

@@ -68,7 +68,7 @@ fn every_gait_runs_its_count_of_cycles_to_within_two_frames_at_any_pace() {
 #[test]
 fn a_gait_of_the_shortest_period_runs_its_count_to_within_two_frames() {
     for (is_forward, count) in [(true, 1), (false, 1), (true, 5), (false, 5)] {
-        let robot = Sample::odd();
+        let robot = Sample::asymmetric();
         let index = robot.gait_id("sway").index();
         let increment = CYCLE as i32 / 10;
         let robot = robot.with_changes(|content| {

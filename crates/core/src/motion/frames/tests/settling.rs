@@ -45,7 +45,7 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
 fn the_first_pulses_after_a_reset_repeat_the_last_ones_however_far_the_settings_differ() {
     // The reset may have occurred after the last pulses were computed and before they were sent.
     let stance_before = *Motion::standing().stance();
-    let mut motion = Motion::new(*Sample::odd());
+    let mut motion = Motion::new(*Sample::asymmetric());
     for index in 0..4 {
         let mut servo = motion.calibration[index];
         servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);

@@ -56,7 +56,7 @@ fn a_gait_or_a_pose_first_wakes_the_servos_where_they_were_left() {
 fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
     let mut woken_motion = resting_motion();
     woken_motion.start("stand");
-    for mut motion in [Motion::new(*Sample::odd()), woken_motion] {
+    for mut motion in [Motion::new(*Sample::asymmetric()), woken_motion] {
         let held_pulses = motion.held_pulses();
         let mut first_frames = [0; 4];
         for frame in 1..=FRAMES_TO_WAKE {
@@ -78,7 +78,7 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
 
 #[test]
 fn a_rest_during_waking_makes_all_servos_wake_again_later() {
-    let mut motion = Motion::new(*Sample::odd());
+    let mut motion = Motion::new(*Sample::asymmetric());
     motion.run(12);
     motion.rest();
     assert_eq!(motion.tick(), Pulses::default());
@@ -114,7 +114,7 @@ fn stop_during_waking_lets_the_servos_wake_but_nothing_move() {
 
 #[test]
 fn a_command_during_waking_waits_until_all_servos_are_awake() {
-    let mut motion = Motion::new(*Sample::odd());
+    let mut motion = Motion::new(*Sample::asymmetric());
     motion.run(3);
     motion.go_to_sweeps(SWEEPS);
     motion.run(FRAMES_TO_WAKE - 3);
