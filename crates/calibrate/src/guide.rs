@@ -236,7 +236,7 @@ impl<C: Console> Guide<C> {
         Ok(())
     }
 
-    /// Makes the robot stand, and restores the settings at the start or of the last save; returns true if other
+    /// Makes the robot stand, and restores the settings of the start or of the last save; returns true if other
     /// settings were active. If a `save` was not answered, first makes the board load its saved settings.
     ///
     /// # Errors

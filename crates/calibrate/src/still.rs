@@ -39,7 +39,7 @@ pub(crate) async fn wait_until_still<C: Console>(
     Ok(ask_pose(console).await?.1)
 }
 
-/// Asks for the robot's status; returns the number of frames since its start, and its pose, degrees.
+/// Asks for the robot's status; returns the number of frames since the robot started, and its pose, degrees.
 async fn ask_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), ConsoleError<C::Error>> {
     let reply = send_command(console, "status").await?;
     let status = Status::parse(&reply.answer);

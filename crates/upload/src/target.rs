@@ -31,7 +31,7 @@ pub struct Target {
 /// The error for an image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT_ADDRESS} before its boot section{}. \
-         Nothing was written", .end_address, if *.in_doubt {
+         Nothing was written", .end_address, if *.is_in_doubt {
     "; this board may be one, because of its USB chip"
 } else {
     ". Gaits can be left out of robot.toml until it fits"
@@ -40,13 +40,13 @@ pub struct ImageTooLong {
     /// The address after the image's last byte.
     end_address: usize,
     /// True if the board may also be a UNO.
-    in_doubt: bool,
+    is_in_doubt: bool,
 }
 
 impl ImageTooLong {
     /// True if the board may also be a UNO, which has room.
     pub fn is_in_doubt(self) -> bool {
-        self.in_doubt
+        self.is_in_doubt
     }
 }
 
@@ -65,8 +65,8 @@ impl Target {
     /// Fails if the board has too little room, or may have too little.
     pub fn check_room(self, image: &Image, loader: LoaderKind) -> Result<(), ImageTooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == LoaderKind::AtmegaBoot;
-        let in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
-        let room = if is_nano || in_doubt {
+        let is_in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
+        let room = if is_nano || is_in_doubt {
             NANO_BOOT_ADDRESS
         } else {
             BOOT_ADDRESS
@@ -75,7 +75,7 @@ impl Target {
         if end > room {
             return Err(ImageTooLong {
                 end_address: end,
-                in_doubt,
+                is_in_doubt,
             });
         }
         Ok(())

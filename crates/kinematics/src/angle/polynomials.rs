@@ -31,7 +31,7 @@ pub struct Polynomial {
     function: fn(&Number) -> Number,
     /// The first terms of the power series of f.
     leading_terms: fn(&Number) -> Number,
-    /// The exponent of the factor of P.
+    /// The exponent of x in the factor of P.
     exponent: i32,
 }
 

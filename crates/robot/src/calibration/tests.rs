@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A calibration in which every setting differs from its default in some servo.
+/// A calibration with a different trim for each servo.
 fn example_calibration() -> Calibration {
     let servo_with = |trim| ServoSettings {
         trim,

@@ -196,7 +196,7 @@ fn corresponding_check(hazard: &Hazard) -> Check {
     }
 }
 
-/// True if a violation exceeds the same limit as an earlier violation, but by more.
+/// True if a violation exceeds the same limit as an earlier violation by more.
 fn is_worse_violation(violation: Violation, earlier: Violation) -> bool {
     let excess_of = |v: Violation| (v.value - v.limit).abs();
     violation.check == earlier.check && excess_of(violation) > excess_of(earlier)

@@ -54,8 +54,8 @@ pub struct Rail {
     pub ratio: f64,
     /// Thresholds of the rail, V, in descending order.
     pub thresholds: [f64; 3],
-    /// True if robot.toml leaves the first threshold out, so that it follows from the servos.
-    pub follows_servos: bool,
+    /// True if robot.toml leaves out the first threshold, so that it is derived from the servos.
+    pub has_derived_slow_threshold: bool,
 }
 
 /// Smallest difference between the first threshold and the second, and between the supply and the first threshold, V.
@@ -68,15 +68,15 @@ const DEFAULT_SLOW_PACE_PERCENT: u8 = 50;
 const MIN_PACE_PERCENT: f64 = 10.0;
 
 impl Rail {
-    /// Sets the first threshold, if it follows from the servos: the voltage below which the most demanding gait would
-    /// use more than `allowed_share` of the servos' torque-speed line. `used_share` is the share that this gait uses at
-    /// the supply `volts`.
+    /// Sets the first threshold, if it is derived from the servos: the voltage below which the most demanding gait
+    /// would use more than `allowed_share` of the servos' torque-speed line. `used_share` is the share that this gait
+    /// uses at the supply `volts`.
     pub(crate) fn set_slow_threshold(&mut self, used_share: f64, allowed_share: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + MIN_THRESHOLD_GAP;
         // Rounded to hundredths. The threshold stays below the supply itself, or the robot would always be slow.
         let slow_volts = (100.0 * volts * used_share / allowed_share).round() / 100.0;
-        if self.follows_servos {
+        if self.has_derived_slow_threshold {
             *slow = slow_volts.min(volts - MIN_THRESHOLD_GAP).max(min);
         }
     }
@@ -169,9 +169,9 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
     }
     // Up to a battery of two lithium cells, 8.4 V, through a divider of two or more.
     let ratio = section.number("ratio", 1.0, 6.0, "(rail over pin)")?;
-    let follows_servos = !section.has_key("slow");
+    let has_derived_slow_threshold = !section.has_key("slow");
     let mut defaults = DEFAULT_THRESHOLDS;
-    if follows_servos && section.has_key("stop") {
+    if has_derived_slow_threshold && section.has_key("stop") {
         // A placeholder until the servos are known.
         defaults[0] = f64::INFINITY;
     }
@@ -179,7 +179,7 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> Checked<Option<Rail>> {
         pin,
         ratio,
         thresholds: read_thresholds(&section, (1.0, 5.0 * ratio), defaults)?,
-        follows_servos,
+        has_derived_slow_threshold,
     }))
 }
 
