@@ -249,8 +249,8 @@ impl Controller {
         }
     }
 
-    /// The robot's state, as a column of the supervisor's table. A routine counts as walking
-    /// even while it stands or rests, since it continues by itself.
+    /// The robot's state, as a column of the supervisor's table. During a routine the robot counts as walking
+    /// even while it stands or rests, since the routine continues by itself.
     fn state(&self) -> State {
         if self.routine.is_under_way() {
             return State::Walking;

@@ -20,7 +20,7 @@ pub enum Fault {
     LateEdge,
     /// The stack has grown into the data.
     Stack,
-    /// Several consecutive resets caused by a weak supply or, where a boot loader hides the cause, by the reset
+    /// Several consecutive resets caused by a weak supply or, if a boot loader hides the cause, by the reset
     /// button.
     BrownOut,
     /// The flash holds no usable robot.

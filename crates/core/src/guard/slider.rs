@@ -1,8 +1,8 @@
 //! The length of the slider, the prismatic joint on each side of the body.
 //!
 //! The slider has two halves and connects an arm of the front crank to an arm of the rear crank on the same side (an
-//! RRPRR five-bar). It has no singularity of its own, since its block of the passive Jacobian is just its length. But
-//! its halves can be pulled apart or collide.
+//! RRPRR five-bar). The slider has no singularity of its own, since its block of the passive Jacobian is just its
+//! length. But its halves can be pulled apart or collide.
 
 use lizard_avr::{mul, mul_unsigned};
 

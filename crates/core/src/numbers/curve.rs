@@ -1,7 +1,7 @@
 //! A smooth function of a squared length, read from a table in flash.
 //!
-//! Computing a root and a quotient would take 2 800 cycles in every frame. The functions that the five-bar needs
-//! depend on a single squared length, so a table is enough. It has sixteen steps per octave of the argument (a range
+//! Computing a root and a quotient would take 2 800 cycles in every frame. The functions that the five-bar needs depend
+//! on a single squared length, so a table is enough. The table has sixteen steps per octave of the argument (a range
 //! from a number to its double), and the function is interpolated linearly within a step. A square root is then
 //! accurate to about one part in ten thousand and a reciprocal to about one in a thousand, near zero as well as far
 //! from it.

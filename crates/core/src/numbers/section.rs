@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of the rest, name, hash of the numbers, hash of the servos |
 //! | [`Numbers`] | 232 | bars, servos, limits, supplies, pins, and the addresses of the parts below |
-//! | curves | 354 each | tables of the couplers of head and tail, equal ones only once: the rise, and where [`Numbers::curves`] has an address, the stretched rise, the folded rise and the skew |
+//! | curves | 354 each | tables of the couplers of head and tail, equal ones only once: the rise and, if [`Numbers::curves`] has an address for them, the stretched rise, the folded rise and the skew |
 //! | gaits | 32 each | [`crate::numbers::gaits::Gait`]; the routines follow the gaits |
 //! | steps | 4 each | the steps of the routines, [`crate::numbers::gaits::Step`] |
 //! | waveforms | 128 each | 64 samples, [`crate::numbers::gaits::Wave`] |

@@ -115,7 +115,7 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
             .collect();
         let listed_names: Vec<&str> = lines.iter().flat_map(|line| line.split('|')).collect();
         assert_eq!(listed_names, names);
-        // A line ends only where the prefix, its names, a bar and the next name would exceed the limit.
+        // A line ends only if the prefix, its names, a bar and the next name would exceed the limit.
         for pair in lines.windows(2) {
             let next_name = pair[1].split('|').next().expect("a line has a name");
             let joined_length = "# gaits: ".len() + pair[0].len() + 1 + next_name.len();
