@@ -1,48 +1,50 @@
-// Formats the results as a table, as an SVG picture to share, and as CSV for a spreadsheet.
-import type { Part, Report } from '../../generated/measure';
+// Formats measured gaits as tables, as an SVG picture to share, and as CSV for a spreadsheet.
+import type { Part as Component, Report } from '../../generated/measure';
 
-// Layout of the picture, px.
+// The layout of the picture, px.
 const PICTURE_WIDTH = 700;
 const LINE_HEIGHT = 22;
 const TITLE_HEIGHT = 64;
-/** Left edges of the columns. */
+/** Left edges of the columns, px. */
 const COLUMN_LEFTS = [24, 130, 220, 290, 390, 520, 590];
-const PARTS = ['forward', 'left', 'turn'] as const;
-const PART_NAMES = ['ahead, mm', 'left, mm', 'turn, deg'];
+/** The components of a cycle's movement, by their keys in a report. */
+const COMPONENTS = ['forward', 'left', 'turn'] as const;
+const COMPONENT_LABELS = ['ahead, mm', 'left, mm', 'turn, deg'];
 const CSV_FIELDS = ['mean', 'sd', 'error', 'predicted', 'differs'] as const;
 
-/** Formats a number with its sign and two decimals; a dash if there is none. */
+/** Formats a number with its sign and two decimals; a dash stands for null. */
 const formatSigned = (value: number | null | undefined) => (value == null ? '–' : `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(2)}`);
 
-/** Compares a measured mean with its prediction, in standard errors. */
-function comparisonText({ agrees, differs }: Part): string {
+/** Returns a text that compares a measured mean with its prediction, in standard errors. */
+function comparisonText({ agrees, differs }: Component): string {
   if (agrees === null || differs === null) return '–';
   return agrees ? 'agrees' : `${Math.abs(differs).toFixed(1)} errors ${differs > 0 ? 'more' : 'less'}`;
 }
 
-/** Returns the column headings of a gait's table. Only some robots at full speed have a column for MuJoCo. */
+/** Returns the column headings of a gait's table; only some robots, at full speed, have a column for MuJoCo. */
 export const columnHeadings = ({ mujoco }: Report) => ['a cycle', 'measured', 'error', 'predicted', '', 'sd', ...(mujoco ? ['MuJoCo'] : [])];
 
+/** Returns the title of a gait's table. */
 export const titleOf = ({ gait, speed, cycles }: Report) => `${gait}, ${speed} %, ${cycles} cycles`;
 
-/** Returns the rows of a gait's table, one for each part of its movement. */
+/** Returns the rows of a gait's table, one for each component of its movement. */
 export function resultRows(report: Report): string[][] {
-  return PARTS.map((name, i) => {
-    const part = report[name];
+  return COMPONENTS.map((key, i) => {
+    const component = report[key];
     const mujocoCell = report.mujoco ? [formatSigned(report.mujoco[i])] : [];
-    return [PART_NAMES[i] ?? '', formatSigned(part.mean), part.error.toFixed(2), formatSigned(part.predicted), comparisonText(part), part.sd.toFixed(2), ...mujocoCell];
+    return [COMPONENT_LABELS[i] ?? '', formatSigned(component.mean), component.error.toFixed(2), formatSigned(component.predicted), comparisonText(component), component.sd.toFixed(2), ...mujocoCell];
   });
 }
 
-/** Returns a sentence that gives the range of a prediction; empty without a range. */
+/** Returns a sentence with the range of a prediction; empty if there is no range. */
 export function rangeSentence({ range }: Report): string {
   if (!range) return '';
   const [name = '', unit = ''] = range.part.split(', ');
-  const endText = (value: number, assumption: string | null) => `${formatSigned(value)} ${unit} (${assumption ?? 'as in robot.toml'})`;
-  return `Predicted ${name} if one assumption is otherwise: ${endText(range.least, range.least_by)} to ${endText(range.most, range.most_by)}.`;
+  const boundText = (value: number, assumption: string | null) => `${formatSigned(value)} ${unit} (${assumption ?? 'as in robot.toml'})`;
+  return `Predicted ${name} if one assumption is otherwise: ${boundText(range.least, range.least_by)} to ${boundText(range.most, range.most_by)}.`;
 }
 
-const escapeText = (text: string) => text.replace(/[&<>]/g, (c) => `&#${c.charCodeAt(0)};`);
+const escapeText = (text: string) => text.replace(/[&<>]/g, (character) => `&#${character.charCodeAt(0)};`);
 const textElement = (x: number, y: number, content: string, attributes = '') => `<text x="${x}" y="${y}" ${attributes}>${escapeText(content)}</text>`;
 
 /** Returns an SVG picture of the results of a robot's gaits. */
@@ -55,7 +57,7 @@ export function svgCard(robot: string, gaits: Report[]): string {
   const body = gaits
     .map((report) => {
       y += LINE_HEIGHT / 2;
-      return rowElements([titleOf(report)], 'font-weight="bold"') + rowElements(columnHeadings(report), 'fill="#5a5f57"') + resultRows(report).map((line) => rowElements(line)).join('') + rowElements([rangeSentence(report)], 'fill="#5a5f57" font-size="12"');
+      return rowElements([titleOf(report)], 'font-weight="bold"') + rowElements(columnHeadings(report), 'fill="#5a5f57"') + resultRows(report).map((row) => rowElements(row)).join('') + rowElements([rangeSentence(report)], 'fill="#5a5f57" font-size="12"');
     })
     .join('');
   return (
@@ -66,7 +68,7 @@ export function svgCard(robot: string, gaits: Report[]): string {
 
 /** Returns the results as CSV: a heading, and one line for each gait. */
 export function resultsCsv(gaits: Report[]): string {
-  const csvLine = (report: Report) => [report.gait, report.speed, report.cycles, ...PARTS.flatMap((part) => CSV_FIELDS.map((field) => report[part][field] ?? ''))];
-  const headings = ['gait', 'speed', 'cycles', ...PARTS.flatMap((part) => CSV_FIELDS.map((field) => `${part}_${field}`))];
+  const csvLine = (report: Report) => [report.gait, report.speed, report.cycles, ...COMPONENTS.flatMap((key) => CSV_FIELDS.map((field) => report[key][field] ?? ''))];
+  const headings = ['gait', 'speed', 'cycles', ...COMPONENTS.flatMap((key) => CSV_FIELDS.map((field) => `${key}_${field}`))];
   return [headings, ...gaits.map(csvLine)].map((cells) => `${cells.join(',')}\n`).join('');
 }

@@ -1,84 +1,86 @@
-// Drives gaits one after another in front of a camera, keeps the robot near the sheet of tags, and records the time
-// of each walk. Any other activity of the robot ends the protocol: `stop`, another gait, a lost link.
+// The protocol of a measurement: drives gaits one after another in front of a camera, keeps the robot near the sheet of
+// tags, and records the time of each walk. Any other activity of the robot, such as `stop` or another gait, ends it; so
+// does a lost link.
 import { DONE_LINE, GAITS, WORDS } from '../words';
 import type { OffsetToMiddle } from './tag-tracker';
 
 /**
- * Limits of a return by a gait: cycles per attempt, attempts, and the least share of the distance that must lie ahead
- * or behind.
+ * Limits of a return to the middle of the sheet by a gait: cycles per attempt, attempts, and the least share of the
+ * distance that must lie ahead or behind.
  */
 const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minAheadShare: 0.7 };
-/** Limits of a gait by which the robot can return: least distance and largest turn, each per cycle. */
+/** Conditions for a gait by which the robot can return: least distance and largest turn, each per cycle. */
 const RETURN_GAIT = { minForwardMm: 3, maxTurnDeg: 2 };
 /**
- * Distance from the middle of the sheet beyond which the robot returns first if the next walk would leave the sheet,
+ * Distance from the middle of the sheet beyond which the robot first returns if the next walk would leave the sheet,
  * mm.
  */
 const RETURN_DISTANCE_MM = 80;
-/**
- * Outward movement near the edge of the sheet that ends a walk, mm; not less, since the body swings within each cycle.
+/** Outward movement near the edge of the sheet that ends a walk, mm. It must exceed the body's swing within a cycle.
  */
 const MAX_OUTWARD_MM = 20;
-/** Time for which the robot may walk without being seen by the camera, s. */
+/** Time for which the robot may walk without being detected by the camera, s. */
 const MAX_UNSEEN_S = 2;
 /**
- * Least cycles of a walk: its first and last cycle are not measured. A walk that was cut shorter counts as this many.
+ * Least number of cycles of a walk, whose first and last cycle are not measured. A walk that was cut shorter counts as
+ * this many cycles.
  */
 export const MIN_CYCLES = 4;
 
-/** A gait that the robot walked, on the film's clock. */
+/** A gait that the robot has walked. */
 export interface Walk {
   gait: string;
-  /** Start and end, s. */
+  /** Start and end on the film's clock, s. */
   during: [number, number];
 }
 
-/** The predicted displacement per cycle of a gait: mm and deg. */
+/** The predicted displacement of a gait per cycle: `forward` in mm, `turn` in deg. */
 export interface PredictedCycle {
   command: string;
   forward: number;
   turn: number;
 }
 
+/** The gaits to walk, and how to walk them. */
 export interface Plan {
-  /** The gaits, each with the time of a cycle at full speed, s. */
+  /** The gaits, each with the duration of a cycle at full speed, s. */
   gaits: { command: string; period: number }[];
   /**
-   * Number of cycles of each gait. Cycles that the edge of the sheet cuts off are walked once the robot is back in
-   * the middle.
+   * Number of cycles of each gait. If the edge of the sheet cuts a walk short, the other cycles follow once the robot
+   * is back in the middle.
    */
   cycles: number;
-  /** Pace, percent. */
+  /** Pace of all gaits, percent. */
   speed: number;
   /** Time from one walk to the next, s. */
   pause: number;
 }
 
-/** The robot and the camera, as the protocol uses them. */
+/** The robot, the camera and the user, as the protocol needs them. */
 export interface Stage {
   /** Sends a line; resolves to true if the robot accepts it. */
   ask: (line: string) => Promise<boolean>;
   /** The film's clock, s. */
   now: () => number;
-  /** Waits some seconds. */
+  /** Waits for `seconds`, in the robot's time. */
   wait: (seconds: number) => Promise<void>;
-  /** Returns the predicted displacements of the gaits, as far as they are known. */
+  /** Returns the predicted displacements of all gaits that have a prediction. */
   predictions: () => PredictedCycle[];
-  /** Asks a person to put the robot back; resolves when that is done, or when the protocol is over. */
+  /** Asks the user to put the robot back; resolves when that is done, or when the protocol is over. */
   putBack: () => Promise<void>;
   /** Shows the progress to the user. */
   say: (text: string) => void;
 }
 
-/** Thrown when the protocol has ended before its last walk. */
+/** Thrown when the protocol ends before its last walk; the message is the reason. */
 export class Interrupted extends Error {}
 
 /** A walk that has not ended yet. */
 interface ActiveWalk {
   gait: string;
-  /** Least distance from the middle so far, mm; null until the robot has accepted the gait. */
+  /** Least distance of the robot from the middle so far, mm; null until the robot has accepted the gait. */
   nearestMm: number | null;
-  /** True if the walk is being ended before its last cycle. */
+  /** True once the walk is ended before its last cycle. */
   isCut: boolean;
   /** The end of the walk on the film's clock, s; null until it has ended. */
   endSeconds: number | null;
@@ -89,6 +91,7 @@ interface ActiveWalk {
 const distance = ({ ahead, left }: OffsetToMiddle) => Math.hypot(ahead, left);
 
 export class Protocol {
+  /** The measured walks so far, without returns. */
   readonly walks: Walk[] = [];
   private activeWalk: ActiveWalk | null = null;
   /** The last line that the protocol has sent. */
@@ -97,12 +100,12 @@ export class Protocol {
   onEnd: () => void = () => {};
   /** The reason why the protocol is over; null until then. */
   private endReason: Interrupted | null = null;
-  /** The last offset that was seen, and its time on the film's clock, s; null before the first. */
+  /** The last detected offset, and its time on the film's clock, s; null before the first. */
   private lastSighting: { offset: OffsetToMiddle; seconds: number } | null = null;
 
   constructor(private readonly stage: Stage) {}
 
-  /** Walks all gaits. Throws {@link Interrupted}; the walks so far are kept. */
+  /** Walks all gaits of a plan. Throws {@link Interrupted}; `walks` then has the walks so far. */
   async run({ gaits, cycles, speed, pause }: Plan): Promise<void> {
     const { stage } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
@@ -120,8 +123,8 @@ export class Protocol {
   }
 
   /**
-   * Takes the robot's offset in a picture, null if the picture does not show the robot. Ends a walk that leaves the
-   * sheet.
+   * Sets the robot's offset in the latest picture; null if the picture does not show the robot. Ends a walk that leaves
+   * the sheet.
    */
   setPlace(offset: OffsetToMiddle | null): void {
     if (!offset) return;
@@ -132,21 +135,21 @@ export class Protocol {
     if (offset.isNear && distance(offset) > activeWalk.nearestMm + MAX_OUTWARD_MM) this.cut(activeWalk);
   }
 
-  /** Notes a line that was sent to the robot, by the protocol or by another part of the page. */
+  /** Notes a line that was sent to the robot; one that another part of the page has sent may end the protocol. */
   noteSent(line: string): void {
     const isWalk = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
     else if (line !== this.lastSent && this.stage.predictions().some(isWalk)) this.end(`the robot was sent "${line}"`);
   }
 
-  /** Notes a line that the robot printed: `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
+  /** Notes a line from the robot: `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
   noteReceived(line: string): void {
     if (line !== DONE_LINE || !this.activeWalk) return;
     this.finish(this.activeWalk);
     this.activeWalk = null;
   }
 
-  /** Takes the robot's current activity; one that is not the protocol's ends the protocol. */
+  /** Sets the robot's current activity; one that the protocol has not asked for ends the protocol. */
   setActivity(activity: string): void {
     const { activeWalk } = this;
     const isWalking = activeWalk?.gait === activity;
@@ -155,7 +158,7 @@ export class Protocol {
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
-  /** Ends the protocol for an external reason, such as a camera that is switched off, and stops a robot that walks. */
+  /** Ends the protocol for an external reason, such as a camera that was switched off, and stops a walking robot. */
   stop(reason: string): void {
     const wasWalking = this.activeWalk !== null;
     this.end(reason);
@@ -170,22 +173,20 @@ export class Protocol {
     this.onEnd();
   }
 
-  /** The robot's last offset; null if the camera has not seen the robot for `MAX_UNSEEN_S`. */
+  /** The robot's last offset; null if the camera has not detected the robot for `MAX_UNSEEN_S`. */
   private get lastOffset(): OffsetToMiddle | null {
     return this.lastSighting && this.stage.now() - this.lastSighting.seconds < MAX_UNSEEN_S ? this.lastSighting.offset : null;
   }
 
-  /**
-   * Brings the robot back if it is near the edge of the sheet: by a gait that leads to the middle, or else by hand. If
-   * only the next walk, of `forwardMm` mm, would leave the sheet, the robot returns to the middle if a gait can take it
-   * there.
+  /** Brings the robot back to the middle if it is near the edge of the sheet, by a gait or else by hand. If only the next
+   * walk, of `forwardMm`, would leave the sheet, the robot returns only if a gait can take it to the middle.
    */
   private async goBack(forwardMm: number): Promise<void> {
     for (let attempt = 0; ; attempt++) {
       const { lastOffset: offset, stage } = this;
       const isOnSheet = offset !== null && !offset.isNear;
-      const isLeaving = offset !== null && attempt === 0 && distance(offset) > RETURN_DISTANCE_MM && Math.hypot(offset.ahead - forwardMm, offset.left) > offset.reach;
-      if (isOnSheet && !isLeaving) return;
+      const wouldLeave = offset !== null && attempt === 0 && distance(offset) > RETURN_DISTANCE_MM && Math.hypot(offset.ahead - forwardMm, offset.left) > offset.reach;
+      if (isOnSheet && !wouldLeave) return;
       const gait = offset && attempt < RETURN_LIMITS.maxAttempts && Math.abs(offset.ahead) > RETURN_LIMITS.minAheadShare * distance(offset) ? this.gaitToward(offset.ahead) : null;
       if (offset && gait) {
         stage.say(`Back to the middle by ${gait.command}`);
@@ -197,7 +198,7 @@ export class Protocol {
   }
 
   /**
-   * Returns the gait that walks farthest ahead (back if `ahead` is negative) and hardly turns; null if there is none.
+   * Returns the gait that walks farthest forward (backward if `ahead` is negative) and hardly turns; null if none does.
    */
   private gaitToward(ahead: number): PredictedCycle | null {
     const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(ahead) : 0);
@@ -207,7 +208,7 @@ export class Protocol {
 
   /**
    * Walks a gait to its last cycle, or to the edge of the sheet. Returns the start and the end of the walk, s; `record`
-   * gets them even if the walk is interrupted.
+   * is called with them even if the walk is interrupted.
    */
   private async walk(gait: string, cycles: number, record: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { stage } = this;
@@ -232,7 +233,7 @@ export class Protocol {
     return [begin, activeWalk.endSeconds ?? begin];
   }
 
-  /** Ends a walk when the robot is no longer seen. */
+  /** Ends a walk when the robot is no longer detected. */
   private async watch(activeWalk: ActiveWalk): Promise<void> {
     while (this.activeWalk === activeWalk && !activeWalk.isCut) {
       if (!this.lastOffset) return this.cut(activeWalk);

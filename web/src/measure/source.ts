@@ -1,11 +1,11 @@
-// Pictures from a camera or from a film file, each with its time on the film's clock.
+// A source of pictures, a camera or a film file, that gives each picture its time on the film's clock.
 import { messageOf } from '../trouble';
 
-/** Largest number of a film file's pictures that wait to be processed. */
+/** Largest number of pictures of a film file that wait to be processed. */
 const MAX_WAITING_PICTURES = 4;
 const CAMERA_CONSTRAINTS = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
 
-/** Processes a picture and its time, s; resolves when that is done. */
+/** Processes a picture that was taken at `seconds`; resolves when that is done. */
 type ProcessPicture = (picture: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
 
 export class PictureSource {
@@ -16,7 +16,7 @@ export class PictureSource {
    */
   private generation = 0;
   private waitingPictures = 0;
-  /** The page's clock minus the film's, s: the least so far, since the delay of a picture makes it larger. */
+  /** The page's clock minus the film's, s: the least difference so far, since the delay of a picture increases it. */
   private clockOffset = Infinity;
 
   constructor(
@@ -40,7 +40,7 @@ export class PictureSource {
     const { mediaDevices } = navigator as { mediaDevices?: MediaDevices };
     if (!mediaDevices) throw new Error('This page may not use a camera: open it by an address that begins with https. A film file works here, too.');
     const stream = await mediaDevices.getUserMedia(CAMERA_CONSTRAINTS).catch((error: unknown) => {
-      throw new Error(refusalOf(error));
+      throw new Error(cameraErrorMessage(error));
     });
     if (this.generation !== startGeneration) {
       for (const track of stream.getTracks()) track.stop();
@@ -73,7 +73,7 @@ export class PictureSource {
     }
   }
 
-  /** Switches the camera off, or leaves the film. */
+  /** Switches the camera off, or closes the film. */
   stop(): void {
     this.generation += 1;
     this.clockOffset = Infinity;
@@ -110,10 +110,11 @@ export class PictureSource {
   }
 }
 
-/** Returns the picture that a video shows: without a copy if the browser has VideoFrame. */
+/** Returns the picture that a video shows; it is not copied if the browser has VideoFrame. */
 const pictureOf = async (video: HTMLVideoElement) => ('VideoFrame' in window ? new VideoFrame(video) : createImageBitmap(video));
 
-function refusalOf(error: unknown): string {
+/** Returns the message for the user if the camera cannot be opened. */
+function cameraErrorMessage(error: unknown): string {
   const { name } = error as { name?: string };
   switch (name) {
     case 'NotAllowedError':

@@ -1,35 +1,35 @@
-// The tags of the last pictures: which tags are missing, the robot's place, and its path. Lengths are measured in the
-// picture with the floor's tags as the scale: precise enough to warn that the robot is about to leave, not to measure
-// a gait.
+// Tracks the tags in the latest pictures: the tags that are hidden, the robot's place and its path. Lengths are
+// measured in the picture, scaled by the floor's tags: precise enough to warn that the robot is about to leave the
+// sheet, but not to measure a gait.
 import type { Pixel, TagEntry as Tag } from '../../generated/measure';
 import type { Detection } from './worker';
 
-/** Names of the tags by their ids. */
+/** The names of the tags, by their ids. */
 const TAG_NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left tag of strip 2', 'the right tag of strip 2', 'the tag on the deck'];
-/** Id of the tag on the robot's deck. */
+/** The id of the tag on the robot's deck. */
 const DECK_ID = 4;
-/** Edge of a tag on the floor, mm. */
+/** Edge length of a tag on the floor, mm. */
 const EDGE_MM = 50;
-/** Distance beyond the floor's tags from which the robot is about to leave the sheet, mm. */
+/** Distance beyond the floor's tags at which the robot is about to leave the sheet, mm. */
 const NEAR_MM = 50;
 /** Distance from the picture's edge within which the robot is about to leave the picture, mm. */
 const PICTURE_MARGIN_MM = 150;
-/** Time over which the rate of pictures is counted, ms. */
-const RECENT_MS = 2000;
-/** Number of pictures without a tag after which the tag counts as hidden. */
+/** Time over which the rate of pictures is averaged, ms. */
+const RATE_WINDOW_MS = 2000;
+/** Number of consecutive pictures without a tag after which the tag counts as hidden. */
 const MAX_MISSED_PICTURES = 3;
 
 const minus = (a: Pixel, b: Pixel): Pixel => [a[0] - b[0], a[1] - b[1]];
 const lengthOf = ([x, y]: Pixel) => Math.hypot(x, y);
 const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, point) => sum + (point[i] ?? 0), 0) / points.length) as Pixel;
 
-/** The displacement from the deck's tag to the middle of the floor's tags, in the robot's frame, mm. */
+/** The vector from the deck's tag to the middle of the floor's tags, in the robot's frame, mm. */
 export interface OffsetToMiddle {
   ahead: number;
   left: number;
-  /** Distance from the middle beyond which the robot is near the edge, mm. */
+  /** Distance from the middle beyond which the robot is near the edge of the sheet, mm. */
   reach: number;
-  /** True if the robot is beyond `reach`, or near the picture's edge. */
+  /** True if the robot is beyond `reach`, or near the edge of the picture. */
   isNear: boolean;
 }
 
@@ -38,39 +38,39 @@ export class TagTracker {
   size: [number, number] = [1, 1];
   /** The tags of the last picture. */
   tags: Tag[] = [];
-  /** Middle of the deck's tag in each picture so far. */
+  /** The middle of the deck's tag in each picture so far that shows it. */
   path: Pixel[] = [];
   /** Time that the search for tags in the last picture took, ms. */
   searchMs = 0;
   /** The tags of the floor as last seen, by their ids. */
   private readonly floorTags: (Tag | undefined)[] = [];
-  /** Number of pictures in a row that did not show a tag, by the tag's id. */
+  /** Number of consecutive pictures, up to the last one, that do not show a tag, by the tag's id. */
   private readonly missedPictures = TAG_NAMES.map(() => MAX_MISSED_PICTURES);
-  /** Arrival times of the pictures within `RECENT_MS`, on the page's clock, ms. */
-  private readonly times: number[] = [];
+  /** Arrival times of the pictures of the last `RATE_WINDOW_MS`, on the page's clock, ms. */
+  private readonly arrivalTimes: number[] = [];
 
-  /** Adds the tags of the next picture. */
+  /** Adds the tags that were detected in the next picture. */
   addDetection({ tags, size, searchMs }: Detection): void {
     Object.assign(this, { tags, size, searchMs });
     for (const id of TAG_NAMES.keys()) this.missedPictures[id] = tags.some((tag) => tag.id === id) ? 0 : (this.missedPictures[id] ?? 0) + 1;
     for (const tag of tags) if (tag.id !== DECK_ID) this.floorTags[tag.id] = tag;
     if (this.deck) this.path.push(mean(this.deck.corners));
-    this.times.push(performance.now());
-    while ((this.times[0] ?? 0) < performance.now() - RECENT_MS) this.times.shift();
+    this.arrivalTimes.push(performance.now());
+    while ((this.arrivalTimes[0] ?? 0) < performance.now() - RATE_WINDOW_MS) this.arrivalTimes.shift();
   }
 
-  /** Pictures per second. */
+  /** The rate of the latest pictures, 1/s. */
   get picturesPerSecond(): number {
-    const [first, last] = [this.times[0], this.times.at(-1)];
-    return first === undefined || last === undefined || last === first ? 0 : (1000 * (this.times.length - 1)) / (last - first);
+    const [first, last] = [this.arrivalTimes[0], this.arrivalTimes.at(-1)];
+    return first === undefined || last === undefined || last === first ? 0 : (1000 * (this.arrivalTimes.length - 1)) / (last - first);
   }
 
-  /** The deck's tag in the last picture. */
+  /** The deck's tag in the last picture; undefined if the picture does not show it. */
   get deck(): Tag | undefined {
     return this.tags.find(({ id }) => id === DECK_ID);
   }
 
-  /** Vector toward the robot's head in the picture, as long as the deck's tag; null if that tag is not seen. */
+  /** The vector toward the robot's head in the picture, as long as the deck's tag; null if that tag is not seen. */
   get heading(): Pixel | null {
     if (!this.deck) return null;
     const [a, b, c, d] = this.deck.corners;
@@ -86,7 +86,7 @@ export class TagTracker {
     return `Not seen: ${hiddenNames.length > 0 ? `${hiddenNames.join(', ')} and ${last}` : last}.`;
   }
 
-  /** The robot's displacement back to the middle; null if the deck's tag or all tags of the floor are unknown. */
+  /** The vector from the robot to the middle; null if the deck's tag or all tags of the floor are unknown. */
   get offsetToMiddle(): OffsetToMiddle | null {
     const { heading, deck, size } = this;
     const floor = this.floorTags.filter((tag) => tag !== undefined);
@@ -104,7 +104,7 @@ export class TagTracker {
     return { ahead, left, reach, isNear: Math.hypot(ahead, left) > reach || edge < PICTURE_MARGIN_MM };
   }
 
-  /** Forgets the path. */
+  /** Clears the path. */
   clear(): void {
     this.path = [];
   }

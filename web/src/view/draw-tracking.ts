@@ -4,17 +4,17 @@ import type { TagTracker } from '../measure/tag-tracker';
 import { prepareSurface } from './canvas';
 import { palette } from './palette';
 
-/** Length of the heading's arrow relative to the size of the tag on the robot's deck. */
+/** Length of the arrow for the heading, relative to the size of the deck's tag. */
 const ARROW_LENGTH = 1.6;
 
 /**
- * Draws what was found in the last picture over it. The picture is centred in its element and scaled to fit, as
+ * Draws the tags, path and heading over the last picture, which is centred in its element and scaled to fit, as
  * `object-fit: contain` does.
  */
 export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): void {
-  const view = prepareSurface(canvas);
-  if (!view) return;
-  const { context, width, height } = view;
+  const surface = prepareSurface(canvas);
+  if (!surface) return;
+  const { context, width, height } = surface;
   const [pictureWidth, pictureHeight] = tracker.size;
   const scale = Math.min(width / pictureWidth, height / pictureHeight);
   context.translate((width - scale * pictureWidth) / 2, (height - scale * pictureHeight) / 2);

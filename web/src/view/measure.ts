@@ -1,5 +1,5 @@
-// The room in which a camera measures the robot: the camera's picture, the protocol by which the page drives the robot,
-// or a film of the user's own, and the results.
+// The room in which a camera measures the robot: the picture of the camera or of a film file, the controls of the
+// protocol by which the page drives the robot, and the results.
 import { transfer } from 'comlink';
 
 import type { AskedWalk } from '../../generated/measure';
@@ -22,10 +22,10 @@ import { setUpNumberInput, putNumber, type Range } from './number';
 import { ROOM_OPENED } from './rooms';
 import { drawTracking } from './draw-tracking';
 
-/** Least displacement per cycle of a gait that is ticked by default. */
+/** Least displacement per cycle with which a gait is ticked by default. */
 const MIN_DISPLACEMENT = { forwardMm: 3, turnDeg: 2 };
 /** Range and default value of each number input; null for no default. */
-const INPUT_RANGES: Record<string, Range & { value: number | null }> = {
+const NUMBER_INPUTS: Record<string, Range & { value: number | null }> = {
   speed: { min: 10, max: 100, step: 5, value: 100 },
   cycles: { min: MIN_CYCLES, max: 50, step: 1, value: 8 },
   pause: { min: 0.5, max: 30, step: 0.5, value: 1 },
@@ -34,10 +34,10 @@ const INPUT_RANGES: Record<string, Range & { value: number | null }> = {
 };
 
 /**
- * The task of the room: `record` keeps the camera's pictures until the user is done, `drive` keeps them while the page
- * drives the robot, `play` reads a film file, and `compute` measures the walks in the pictures.
+ * The task of the room: `record` adds the camera's pictures to the film until the user is done, `drive` does so while
+ * the page drives the robot, `play` reads a film file, and `compute` measures the walks in the film.
  */
-type Task = 'nothing' | 'record' | 'drive' | 'play' | 'compute';
+type Task = 'idle' | 'record' | 'drive' | 'play' | 'compute';
 
 type FilmHelper = Helper<FilmWorkerApi>;
 
@@ -62,32 +62,32 @@ export class MeasureView {
   private readonly values: Record<string, number | null> = {};
   private readonly resultsView: ResultsView;
   private readonly source: PictureSource;
-  /** The worker that keeps and measures the pictures; null until it is needed. */
+  /** The worker that has the film and measures it; null until it is needed. */
   private filmHelper: Promise<FilmHelper> | null = null;
   private tracker = new TagTracker();
-  private task: Task = 'nothing';
+  private task: Task = 'idle';
   /** The protocol by which the page drives the robot; null while it does not drive. */
   private protocol: Protocol | null = null;
-  /** True while the user puts the robot back by hand; pictures of this are not kept. */
+  /** True while the user puts the robot back by hand; the film gets no pictures meanwhile. */
   private isBeingPutBack = false;
-  /** True if a film file was read, whose pictures can be measured again. */
+  /** True if a film file was read, which can be measured again. */
   private hasFilm = false;
   /** The gaits that the user has ticked (true) or unticked (false). */
   private readonly userTicks = new Map<string, boolean>();
 
   /**
-   * `isSetUpOpen` returns true while the set-up is open: the robot must not be driven then, since hands may be in it.
+   * `isSetupOpen` returns true while the setup is open: the robot must not be driven then, since hands may be in it.
    */
   constructor(
     private readonly session: Session,
     private readonly predictor: Predictor,
-    private readonly isSetUpOpen: () => boolean,
+    private readonly isSetupOpen: () => boolean,
   ) {
     this.resultsView = new ResultsView(() => this.session.description.name);
     const video = this.view.querySelector('video');
     if (!video) throw new Error('the page has no video for the camera');
     this.source = new PictureSource(video, (picture, seconds) => this.processPicture(picture, seconds));
-    for (const [name, { value, ...range }] of Object.entries(INPUT_RANGES)) {
+    for (const [name, { value, ...range }] of Object.entries(NUMBER_INPUTS)) {
       const input = element<HTMLInputElement>(`measure-${name}`);
       this.values[name] = value;
       setUpNumberInput(input, range, (typed) => (this.values[name] = typed ?? value));
@@ -99,19 +99,19 @@ export class MeasureView {
       if (file) void this.runAction(() => this.readFilm(file));
     });
     element('measure-sheet').addEventListener('click', () => void this.runAction(() => this.saveSheet()));
-    this.startButton.addEventListener('click', () => void this.runAction(() => this.pressStart()));
+    this.startButton.addEventListener('click', () => void this.runAction(() => this.handleStartButton()));
     this.driverList.addEventListener('change', () => this.updateControls());
     document.addEventListener(ROOM_OPENED, () => this.room.hidden && this.switchCameraOff());
     session.followRobot((description) => this.showRobot(description));
     predictor.predictions.subscribe(() => this.tickMovingGaits());
     session.state.gait.subscribe((activity) => this.protocol?.setActivity(activity));
-    session.state.isSilent.subscribe((isSilent) => isSilent && this.stop('the robot is silent'));
+    session.state.isSilent.subscribe((isSilent) => isSilent && this.stopDriving('the robot is silent'));
     session.state.link.subscribe(() => this.followLink());
   }
 
-  /** Ends driving, and lists the gaits of the robot that was chosen. */
+  /** Ends driving, and lists the gaits of another robot. */
   private showRobot({ gaits }: Description): void {
-    this.stop('another robot was chosen');
+    this.stopDriving('another robot was chosen');
     const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     const chosen = this.gaitList.value;
     this.gaitList.replaceChildren(new Option('found by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
@@ -133,7 +133,7 @@ export class MeasureView {
   }
 
   /** Ends driving for an external reason, and stops the robot. */
-  private stop(reason: string): void {
+  private stopDriving(reason: string): void {
     this.protocol?.stop(reason);
   }
 
@@ -144,23 +144,23 @@ export class MeasureView {
     this.updateControls();
   }
 
-  /** Takes a line that was sent to the robot. */
+  /** Notes a line that was sent to the robot. */
   noteSent(line: string): void {
     this.protocol?.noteSent(line);
   }
 
-  /** Takes a line that the robot has sent. */
+  /** Notes a line that the robot has sent. */
   noteReceived(line: string): void {
     this.protocol?.noteReceived(line);
   }
 
-  /** Updates the texts about the last pictures; called several times per second. */
+  /** Updates the texts about the latest pictures; called several times per second. */
   updateNumbers(): void {
     if (this.room.hidden || this.view.hidden) return;
-    const { picturesPerSecond: rate, hiddenTagsMessage: trouble, searchMs: ms } = this.tracker;
-    setText(element('measure-rate'), `${rate.toFixed(0)} pictures a second, each looked at in ${ms.toFixed(0)} ms`);
-    setText(element('measure-seen'), trouble || 'All five tags are seen.');
-    element('measure-seen').classList.toggle('refusal', trouble !== '');
+    const { picturesPerSecond: rate, hiddenTagsMessage, searchMs } = this.tracker;
+    setText(element('measure-rate'), `${rate.toFixed(0)} pictures a second, each looked at in ${searchMs.toFixed(0)} ms`);
+    setText(element('measure-seen'), hiddenTagsMessage || 'All five tags are seen.');
+    element('measure-seen').classList.toggle('refusal', hiddenTagsMessage !== '');
   }
 
   private getFilmHelper(): Promise<FilmHelper> {
@@ -169,7 +169,7 @@ export class MeasureView {
     return this.filmHelper;
   }
 
-  /** Runs an action that the user has asked for; shows the reason if it fails. */
+  /** Runs an action of the user; shows the reason if it fails. */
   private async runAction(action: () => Promise<void>): Promise<void> {
     try {
       await action();
@@ -197,20 +197,20 @@ export class MeasureView {
     this.setMessage('Place the camera so that all five tags are seen.');
   }
 
-  /** Switches the camera off and ends the activity that uses it. */
+  /** Switches the camera off and ends the task that uses it. */
   private switchCameraOff(): void {
-    this.stop('the camera was switched off');
+    this.stopDriving('the camera was switched off');
     this.source.stop();
-    if (this.task !== 'compute') this.task = 'nothing';
+    if (this.task !== 'compute') this.task = 'idle';
     this.updateControls();
   }
 
-  /** Finds the tags in a picture, which was taken at the time `seconds`, and draws them over it. */
+  /** Finds the tags in a picture that was taken at `seconds`, and draws them over the picture. */
   private async processPicture(picture: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
     const filmHelper = await this.getFilmHelper();
     const isKept = this.task === 'record' || this.task === 'play' || (this.task === 'drive' && !this.isBeingPutBack);
     try {
-      this.tracker.addDetection(await filmHelper.call((film) => film.look(transfer(picture, [picture]), seconds, isKept)));
+      this.tracker.addDetection(await filmHelper.call((film) => film.findTags(transfer(picture, [picture]), seconds, isKept)));
       this.protocol?.setPlace(this.tracker.offsetToMiddle);
       drawTracking(this.view.querySelector('canvas') as HTMLCanvasElement, this.tracker);
     } catch (error) {
@@ -234,18 +234,18 @@ export class MeasureView {
       this.hasFilm = true;
       await this.measureWalks(this.wholeFilmWalks);
     } finally {
-      this.task = 'nothing';
+      this.task = 'idle';
     }
   }
 
-  /** The chosen gait in the whole film as one walk; empty if the gaits are to be recognized by their paths. */
+  /** The whole film as one walk of the chosen gait; empty if the gaits are to be recognized by their paths. */
   private get wholeFilmWalks(): AskedWalk[] {
     const gait = this.gaitList.value;
     return gait === '' ? [] : [{ gait, during: null }];
   }
 
-  /** Acts as the start button says: starts or ends recording or driving, or measures the film file again. */
-  private async pressStart(): Promise<void> {
+  /** Does what the start button shows: starts or ends recording or driving, or measures the film file again. */
+  private async handleStartButton(): Promise<void> {
     if (this.task === 'record') return this.measureWalks(this.wholeFilmWalks);
     if (this.task === 'drive') return void this.session.ask(WORDS.stop);
     if (this.hasFilm) return this.measureWalks(this.wholeFilmWalks);
@@ -262,16 +262,16 @@ export class MeasureView {
   /** Returns the ticked gaits. Throws the reason why the page cannot drive. */
   private drivableGaits(): Gait[] {
     const session = this.session;
-    const ticked = [...this.gaitBoxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
-    const gaits = session.description.gaits.filter(({ command }) => ticked.includes(command));
-    if (this.isSetUpOpen()) throw new Error('Hands may be in the robot: leave the set-up first.');
+    const tickedCommands = [...this.gaitBoxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
+    const gaits = session.description.gaits.filter(({ command }) => tickedCommands.includes(command));
+    if (this.isSetupOpen()) throw new Error('Hands may be in the robot: leave the set-up first.');
     if (session.otherRobot) throw new Error(`The board has another robot, ${session.otherRobot.name}: choose that one, or write this one to the board.`);
     if (!session.isFirmwareAnswering) throw new Error(`No robot answers from the ${session.link.name}.`);
     if (gaits.length === 0) throw new Error('Tick at least one gait.');
     return gaits;
   }
 
-  /** Lets the robot walk the gaits, and measures the walks; also those before an interruption. */
+  /** Lets the robot walk the gaits, and measures the walks, also after an interruption. */
   private async driveGaits(gaits: Gait[]): Promise<void> {
     const session = this.session;
     const { cycles, pause } = this.values;
@@ -297,12 +297,12 @@ export class MeasureView {
     } finally {
       this.protocol = null;
       this.isBeingPutBack = false;
-      this.task = 'nothing';
+      this.task = 'idle';
       this.putBackButton.hidden = true;
     }
   }
 
-  /** Returns the walks with the gaits' names in robot.toml in place of their commands. */
+  /** Returns the walks with the gaits' names in robot.toml instead of their commands. */
   private withGaitNames(walks: Walk[]): AskedWalk[] {
     const { gaits } = this.session.description;
     return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
@@ -322,9 +322,9 @@ export class MeasureView {
   }
 
   /**
-   * Measures walks in the film. Shows the results, the given troubles and the reasons why walks could not be measured.
+   * Measures walks in the film. Shows the results, the given problems and the reasons why walks could not be measured.
    */
-  private async measureWalks(walks: AskedWalk[], speed = this.values.speed ?? 100, troubles: string[] = []): Promise<void> {
+  private async measureWalks(walks: AskedWalk[], speed = this.values.speed ?? 100, problems: string[] = []): Promise<void> {
     this.task = 'compute';
     this.setMessage('Measuring…');
     this.updateControls();
@@ -333,13 +333,13 @@ export class MeasureView {
     try {
       const results = await filmHelper.call((film) => film.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
       this.resultsView.show(results.gaits);
-      troubles.push(...results.troubles);
+      problems.push(...results.troubles);
     } catch (error) {
       this.resultsView.show([]);
-      troubles.push(messageOf(error));
+      problems.push(messageOf(error));
     }
-    this.task = 'nothing';
-    this.setMessage(troubles.map((trouble) => `${trouble}.`).join(' '), true);
+    this.task = 'idle';
+    this.setMessage(problems.map((problem) => `${problem}.`).join(' '), true);
   }
 
   private async saveSheet(): Promise<void> {
@@ -349,7 +349,7 @@ export class MeasureView {
     this.setMessage('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 
-  /** Shows and enables the controls that can be used during the current task. */
+  /** Shows and enables the controls that are usable during the current task. */
   private updateControls(): void {
     const { task, source, hasFilm } = this;
     const isPageDriving = this.driverList.value === 'page' && !hasFilm;
@@ -361,11 +361,11 @@ export class MeasureView {
     for (const label of this.room.querySelectorAll<HTMLElement>('[data-driver]')) label.hidden = !isPageDriving;
     this.startButton.textContent = task === 'record' ? 'Done' : task === 'drive' ? 'Stop' : hasFilm ? 'Measure again' : isPageDriving ? 'Drive and measure' : 'Record';
     this.startButton.disabled = task === 'play' || task === 'compute' || (!source.isCamera && !hasFilm);
-    this.driverList.disabled = task !== 'nothing';
+    this.driverList.disabled = task !== 'idle';
   }
 
-  private setMessage(text: string, isTrouble = false): void {
+  private setMessage(text: string, isProblem = false): void {
     setText(element('measure-said'), text);
-    element('measure-said').classList.toggle('refusal', isTrouble && text !== '');
+    element('measure-said').classList.toggle('refusal', isProblem && text !== '');
   }
 }

@@ -1,4 +1,4 @@
-// The results of the room Measure: tables on the page, and files to keep, to share and to print.
+// The results of the room Measure: tables on the page, and files to save, share and print.
 import { svgCard, resultsCsv, columnHeadings, rangeSentence, resultRows, titleOf } from '../measure/card';
 import type { Report } from '../../generated/measure';
 import { element } from './canvas';
@@ -11,8 +11,8 @@ const PNG_SCALE = 2;
 export class ResultsView {
   private gaits: Report[] = [];
 
-  /** `name` returns the robot's name. */
-  constructor(private readonly name: () => string) {
+  /** `robotName` returns the name of the session's robot. */
+  constructor(private readonly robotName: () => string) {
     const onClick = (id: string, action: () => void) => element(`measured-${id}`).addEventListener('click', action);
     onClick('svg', () => saveFile('measured.svg', [this.cardSvg], 'image/svg+xml'));
     onClick('png', () => void this.savePng());
@@ -21,7 +21,7 @@ export class ResultsView {
     onClick('print', () => print());
   }
 
-  /** Shows the results of some gaits. */
+  /** Shows the results of these gaits; hides the results if there are none. */
   show(gaits: Report[]): void {
     this.gaits = gaits;
     element('measure-results').hidden = gaits.length === 0;
@@ -30,7 +30,7 @@ export class ResultsView {
   }
 
   private get cardSvg(): string {
-    return svgCard(this.name(), this.gaits);
+    return svgCard(this.robotName(), this.gaits);
   }
 
   private async savePng(): Promise<void> {

@@ -1,5 +1,5 @@
-// The dialog of the first connection, in which a new robot is set up step by step. Every step can be left and entered
-// again.
+// The dialog of the first connection, in which a new robot is set up step by step. The user can enter and leave the
+// steps in any order.
 import type { Guide } from '../../generated/board';
 import { follow } from '../follow';
 import type { Link } from '../link/link';
@@ -28,12 +28,12 @@ const STEPS: readonly Step[] = [boardStep, firmwareStep, hornsStep, new SignsSte
 const LOST_MESSAGE = 'The board is not connected any more. What was not saved is lost. Connect it again and go on here.';
 const NO_ROBOT_MESSAGE = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
-/** The dialog. The steps call its public methods as plain functions, so these methods are arrow functions. */
+/** The dialog. The steps call its methods as plain functions, so these methods are arrow functions. */
 export class Setup implements StepTools {
   guide: BoardGuide | null = null;
   servo = 0;
   private step: Step = boardStep;
-  /** The keys of the steps, and of the parts of steps, that are done. */
+  /** The names of the finished steps, and the keys of the finished parts of steps. */
   private readonly doneSteps = new Set<string>();
   private readonly dialog = element('setup');
   private readonly stepList = element('setup-steps');
@@ -43,20 +43,20 @@ export class Setup implements StepTools {
   private readonly drawingBox = element('setup-drawing');
   private readonly message = element('setup-said');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
-  /** Number of actions that were begun or dropped so far; by it the result of an outdated action is recognized. */
+  /** Number of actions that were started or dropped so far; identifies the result of an outdated action. */
   private actionCount = 0;
   private isBusy = false;
-  /** True if the running action was started by the dialog itself; a button's action waits until it ends. */
+  /** True if the dialog itself has started the running action; the action of a button then waits until it ends. */
   private isAutomatic = false;
-  /** The action of a button that begins when the running action ends; null for none. */
+  /** The action of a button that starts when the running action ends; null for none. */
   private waitingAction: (() => Promise<string>) | null = null;
-  /** Settles when the action that was started last ends. */
+  /** Settles when the last action ends. */
   private runningAction: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
   /**
    * True from the loss of a board until the next connection, or until the user goes on without it: an action that
-   * began on the lost board must not continue on another one.
+   * started on the lost board must not continue on another one.
    */
   private isLost = false;
   /** True if the board has reported that no calibration is saved on it. */
@@ -83,11 +83,11 @@ export class Setup implements StepTools {
       this.servoButtons.append(button(`A${servo + 1} ${place}`, choose));
     });
     const { link, banner, bannerCount, description } = session.state;
-    // A robot that restarts sends its banner again.
+    // Each restart of the robot changes the number of banners.
     follow([link, banner, bannerCount, description, writer.isBusy], () => link.value && this.followLink());
   }
 
-  /** True while the dialog is open, so that hands may be in the robot. */
+  /** True while the dialog is open; hands may then be in the robot. */
   get isOpen(): boolean {
     return !this.dialog.hidden;
   }
@@ -105,7 +105,7 @@ export class Setup implements StepTools {
   /** Opens the first step that a newly connected board needs, if it needs one. */
   openNeededStep(): void {
     const { banner, hasThisRobot, link } = this.session;
-    // Firmware cannot be written by radio, and a user who has added a radio module has been through these steps.
+    // Nothing can be written by radio, and a user who has added a radio module has been through these steps.
     if (link.kind === 'radio' && this.dialog.hidden) return;
     const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmwareStep : this.isUncalibrated ? hornsStep : null;
     if (this.dialog.hidden) {
@@ -113,12 +113,12 @@ export class Setup implements StepTools {
     } else this.enterStep(this.step === boardStep && step ? step : this.step);
   }
 
-  /** Takes a line that the robot has sent. */
+  /** Notes a line that the robot has sent. */
   noteReceived(line: string): void {
     if (line.startsWith(NOTHING_SAVED_LINE)) this.isUncalibrated = true;
   }
 
-  /** Updates the view for the session's link; ends the current action if it is another link. */
+  /** Updates the view for the session's link; drops the current action if the link is a new one. */
   private followLink(): void {
     const { link, isReal } = this.session;
     if (link === this.lastLink) return this.update();
@@ -143,7 +143,7 @@ export class Setup implements StepTools {
   }
 
   /**
-   * Drops the current action. Steps that are done stay done, unless the robot has lost its unsaved settings
+   * Drops the current action. Finished steps stay finished, unless the robot has lost its unsaved settings
    * (`areSettingsLost`).
    */
   private dropAction(areSettingsLost = true): void {
@@ -155,7 +155,7 @@ export class Setup implements StepTools {
     for (const step of STEPS) step.reset?.();
   }
 
-  /** Closes the dialog after the current action; if settings are unsaved, restores the old calibration. */
+  /** Closes the dialog after the current action; if settings are unsaved, restores the previous calibration. */
   private async leave(): Promise<void> {
     if (this.guide?.isCurrent) await this.runningAction;
     let message = '';
@@ -200,7 +200,7 @@ export class Setup implements StepTools {
     });
   };
 
-  readonly run = (work: (guide: Guide) => Promise<string>): void => this.runAction(async () => (await this.requireGuide()).run(work));
+  readonly run = (action: (guide: Guide) => Promise<string>): void => this.runAction(async () => (await this.requireGuide()).run(action));
 
   readonly stand = (): void =>
     this.run(async (guide) => {
@@ -208,7 +208,7 @@ export class Setup implements StepTools {
       return 'The robot stands.';
     });
 
-  /** Returns the guide of the connected robot; reads the robot's calibration first if needed. */
+  /** Returns the guide for the connected robot; starts it first if needed. */
   private async requireGuide(): Promise<BoardGuide> {
     if (this.isLost) throw new Error(LOST_MESSAGE);
     if (!this.session.isFirmwareAnswering) throw new Error(NO_ROBOT_MESSAGE);
@@ -216,17 +216,17 @@ export class Setup implements StepTools {
     return this.guide;
   }
 
-  /** Runs an action, unless another one is running; `isAutomatic` is true if the dialog starts it by itself. */
-  private runAction(work: () => Promise<string>, isAutomatic = false): void {
+  /** Runs an action, unless another one is running; `isAutomatic` is true if the dialog itself starts it. */
+  private runAction(action: () => Promise<string>, isAutomatic = false): void {
     if (this.isBusy) {
-      if (this.isAutomatic && !isAutomatic) this.waitingAction = work;
+      if (this.isAutomatic && !isAutomatic) this.waitingAction = action;
       return;
     }
     this.isAutomatic = isAutomatic;
     const actionNumber = ++this.actionCount;
     this.setBusy(true);
     this.setMessage('');
-    this.runningAction = work()
+    this.runningAction = action()
       .catch(messageOf)
       .then((message) => {
         if (actionNumber !== this.actionCount) return;
@@ -265,7 +265,7 @@ export class Setup implements StepTools {
     this.redraw();
     this.title.focus({ preventScroll: true });
     if (!step.needsRobot || !this.session.isFirmwareAnswering || this.isLost) return;
-    // Servos that the previous step has turned return to neutral.
+    // Servos that the previous step has turned go back to neutral.
     const { guide } = this;
     if (!guide) this.runAction(async () => this.requireGuide().then(() => ''), true);
     else if (this.session.gait !== GAITS.stand) this.runAction(async () => guide.run((board) => board.stand()).then(() => ''), true);
@@ -291,9 +291,9 @@ export class Setup implements StepTools {
     this.servoButtons.hidden = !isUsable || !step.isPerServo;
     this.servoButtons.querySelectorAll('button').forEach((servoButton, servo) => servoButton.setAttribute('aria-pressed', String(servo === this.servo)));
     const scene = session.last?.scene ?? null;
-    const drawingElement = isUsable && step.selectedServo && scene ? makeDrawing(session.description, scene, step.selectedServo(this)) : null;
-    this.drawingBox.replaceChildren(...(drawingElement ? [drawingElement] : []));
-    this.drawingBox.hidden = !drawingElement;
+    const drawing = isUsable && step.selectedServo && scene ? makeDrawing(session.description, scene, step.selectedServo(this)) : null;
+    this.drawingBox.replaceChildren(...(drawing ? [drawing] : []));
+    this.drawingBox.hidden = !drawing;
     const tryOnSimulation = () => {
       this.isLost = false;
       this.enterStep(step);
@@ -307,7 +307,7 @@ export class Setup implements StepTools {
             ...(isLost ? [button('Try this step on the simulated UNO', tryOnSimulation)] : []),
           ),
         ];
-    // The keyboard's focus stays on the button with the same text, or goes to the main button.
+    // The focus stays on the button with the same text, or goes to the main button, or else to the title.
     const focusedText = this.content.contains(document.activeElement) ? document.activeElement?.textContent : null;
     this.content.replaceChildren(...elements);
     if (focusedText === null) return;

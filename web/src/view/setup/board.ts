@@ -1,4 +1,4 @@
-// The step Board: connects a board and identifies it.
+// The step Board, in which the user connects a board.
 import { bluetoothProblem } from '../../link/bluetooth-link';
 import { hasSerial, NO_SERIAL_MESSAGE } from '../../link/port-link';
 import type { Session } from '../../session';
@@ -10,7 +10,7 @@ export function robotName({ file, toml, original }: Session): string {
   return toml === original ? `${file}.toml` : `${file}.toml with your changes`;
 }
 
-/** Returns a message that says what is connected, and which firmware and robot are on it. */
+/** Returns a message that names the connected board and the firmware and robot on it. */
 export function boardDescription(session: Session): string {
   const { link, banner } = session;
   if (banner === undefined) return `The ${link.name} has not identified itself yet.`;
@@ -33,7 +33,7 @@ export const boardStep: Step = {
         row(button(session.isFirmwareAnswering ? 'Go on' : 'Write the firmware', () => goTo('Firmware'), true), button('Disconnect', connect)),
       ];
     }
-    const parts = [
+    const elements = [
       list(
         'The servos\' own supply, 5 V and 3 A, stays off until the horns are fitted. The board needs its USB cable alone.',
         'The USB cable has to carry data: some only charge.',
@@ -41,8 +41,8 @@ export const boardStep: Step = {
       ),
       hasSerial() ? row(button('Choose its port…', connect, true)) : warning(NO_SERIAL_MESSAGE),
     ];
-    parts.push(note(bluetoothProblem() ?? 'A board that has this firmware already can also be reached by a Bluetooth LE module: Bluetooth… is in this room.'));
-    parts.push(note('Without a board, every step can be tried with the simulated one of this page.'));
-    return parts;
+    elements.push(note(bluetoothProblem() ?? 'A board that has this firmware already can also be reached by a Bluetooth LE module: Bluetooth… is in this room.'));
+    elements.push(note('Without a board, every step can be tried with the simulated one of this page.'));
+    return elements;
   },
 };

@@ -1,5 +1,5 @@
-// The drawing of the robot for the first connection, from above with forward upward: each servo, the direction of its
-// crank, and an arrow for a turn. The body is drawn shorter than it is, so that the cranks are large.
+// The drawing of the robot for the first connection, from above with the head upward: each servo, the direction of its
+// crank, and an arrow for a turn. The body is drawn shorter than it is, so that the cranks appear large.
 import type { Description, Four, Scene, Point } from '../../robot';
 import { makeSvg } from '../make';
 
@@ -8,31 +8,31 @@ export const SERVO_PLACES = ['front left', 'front right', 'back right', 'back le
 /** Returns a servo's name with its place, such as `A1, front left`. */
 export const servoName = (servo: number): string => `A${servo + 1}, ${SERVO_PLACES[servo]}`;
 
-/** The selected servo. */
+/** The servo that the drawing highlights. */
 export interface SelectedServo {
   servo: number;
-  /** The servo's turn, deg counter-clockwise; null for none. */
+  /** The turn that the arrow shows, deg counter-clockwise; null for none. */
   turnDeg: number | null;
 }
 
-/** Half of the drawn distance from the front shafts to the rear shafts. */
+/** Half of the drawn distance between the front and the rear shafts. */
 const HALF_LENGTH_MM = 34;
-/** Length of the arrow's arc: more than the servo turns, so that it is seen clearly. */
+/** Length of the arrow's arc: more than the servo's turn, so that the arrow is clearly visible. */
 const ARC_DEG = 55;
 const RADIANS_PER_DEG = Math.PI / 180;
 
-/** Returns the point at a distance in mm and an angle from another point, in the drawing's frame with y downward. */
-function pointAt([x, y]: Point, length: number, degrees: number): Point {
-  return [x + length * Math.cos(degrees * RADIANS_PER_DEG), y - length * Math.sin(degrees * RADIANS_PER_DEG)];
+/** Returns the point at `lengthMm` and an angle from another point, in the drawing's frame with y downward. */
+function pointAt([x, y]: Point, lengthMm: number, degrees: number): Point {
+  return [x + lengthMm * Math.cos(degrees * RADIANS_PER_DEG), y - lengthMm * Math.sin(degrees * RADIANS_PER_DEG)];
 }
 
 const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => makeSvg('line', { class: className, x1, y1, x2, y2 });
 
-/** Makes an arrow about a shaft. It begins at the angle `begin` in deg, and has the direction of the turn `turn`. */
-function makeArrow(shaft: Point, radius: number, begin: number, turn: number): SVGElement[] {
+/** Makes an arrow about a shaft that starts at the angle `start`, deg, and has the direction of `turn`. */
+function makeArrow(shaft: Point, radius: number, start: number, turn: number): SVGElement[] {
   const direction = Math.sign(turn);
-  const end = begin + direction * ARC_DEG;
-  const [x1, y1] = pointAt(shaft, radius, begin);
+  const end = start + direction * ARC_DEG;
+  const [x1, y1] = pointAt(shaft, radius, start);
   const [x2, y2] = pointAt(shaft, radius, end);
   // SVG's sweep flag is 0 for counter-clockwise, since y is downward.
   const arc = makeSvg('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turn > 0 ? 0 : 1} ${x2} ${y2}` });
@@ -73,7 +73,7 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
       group.append(makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + selected.turnDeg)), ...makeArrow(shaft, crankLength * 0.75, neutral + Math.sign(selected.turnDeg) * 8, selected.turnDeg));
     }
     group.append(makeSvg('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
-    // The text is outside the arrow, which may reach as far as the crank.
+    // The text is beyond the crank, so that it does not overlap the arrow.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + crankLength + 6);
     const y = shaft[1] + Math.sign(shaft[1]) * crankLength * 0.4;

@@ -1,4 +1,4 @@
-// The step Firmware: writes the firmware and the robot through the boot loader.
+// The step Firmware, which writes the firmware and the robot through the boot loader.
 import { boardDescription, robotName } from './board';
 import { NO_WRITING_BY_RADIO } from '../../session';
 import { button, note, row, warning, paragraph } from '../make';

@@ -1,4 +1,4 @@
-// The step Horns: each servo holds the middle of its travel while its crank is pressed on.
+// The step Horns, in which each servo holds the middle of its travel while the user presses its crank on.
 import { button, list, note, row, paragraph } from '../make';
 import type { Step } from './step';
 

@@ -1,4 +1,4 @@
-// The step Keep: saves the calibration in the board and as a file.
+// The step Keep, which saves the calibration in the board and as a file.
 import { calibrationText } from '../../robot';
 import { servoName } from './drawing';
 import { saveFile } from '../download';

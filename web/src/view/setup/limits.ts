@@ -1,9 +1,9 @@
-// The step Limits: limits each servo's travel where printed parts would touch each other.
+// The step Limits, which limits each servo's travel so that printed parts do not touch each other.
 import { servoName, type SelectedServo } from './drawing';
 import { button, note, numberBox, row, paragraph } from '../make';
 import type { Step, StepTools } from './step';
 
-/** Turn of the servo for one press of a button. */
+/** Turn of the servo per press of a button. */
 const TURN_DEG = 5;
 
 export class LimitsStep implements Step {
@@ -11,11 +11,11 @@ export class LimitsStep implements Step {
   readonly title = 'Limit their travel';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The servo that was turned last, and its commanded angle in deg; null while the robot stands. */
-  private lastTurned: { servo: number; degrees: number } | null = null;
+  /** The servo that was turned last, and its commanded angle, deg; null while the robot stands. */
+  private lastTurn: { servo: number; degrees: number } | null = null;
 
   reset(): void {
-    this.lastTurned = null;
+    this.lastTurn = null;
   }
 
   selectedServo({ servo }: StepTools): SelectedServo {
@@ -25,7 +25,7 @@ export class LimitsStep implements Step {
   makeElements(tools: StepTools): Node[] {
     const { guide, servo, session } = tools;
     const limit = guide?.calibration.servos[servo].limit ?? null;
-    const currentAngle = this.lastTurned?.servo === servo ? this.lastTurned.degrees : session.description.servos[servo].neutral;
+    const currentAngle = this.lastTurn?.servo === servo ? this.lastTurn.degrees : session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
     const makeBox = (label: string, value: number, action: (value: number) => void) => numberBox(label, value, '0.01', action);
     return [
@@ -57,7 +57,7 @@ export class LimitsStep implements Step {
   private turnServo({ servo, run }: StepTools, degrees: number): void {
     run(async (guide) => {
       const angle = await guide.point(servo, degrees);
-      this.lastTurned = { servo, degrees };
+      this.lastTurn = { servo, degrees };
       return `A${servo + 1} points to ${angle.toFixed(2)}°.`;
     });
   }

@@ -1,4 +1,5 @@
-// The step Scale: measures how far each servo turns, since not every servo turns by 1 deg per 10 µs of pulse width.
+// The step Scale, in which the user measures how far each servo turns: not every servo turns by 1° per 10 µs of pulse
+// width.
 import { servoName, type SelectedServo } from './drawing';
 import { button, note, numberBox, row, paragraph } from '../make';
 import type { Step, StepTools } from './step';
@@ -8,7 +9,7 @@ export class ScaleStep implements Step {
   readonly title = 'Measure how far they turn';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The servo that was turned last, and its commanded turn in deg counter-clockwise; null before the turn. */
+  /** The servo that was turned last, and its commanded turn, deg counter-clockwise; null before the turn. */
   private lastTurn: { servo: number; turnDeg: number } | null = null;
 
   reset(): void {

@@ -1,5 +1,5 @@
 // The step Signs, in which the user proves the direction in which each servo turns. A servo with a wrong sign turns to
-// the other side of its neutral angle, so the guard would take an unsafe pose for a safe one.
+// the other side of its neutral angle, so the guard would accept an unsafe pose.
 import { servoName, SERVO_PLACES, type SelectedServo } from './drawing';
 import { button, note, row, paragraph } from '../make';
 import type { Step, StepTools } from './step';
@@ -15,13 +15,13 @@ export class SignsStep implements Step {
   readonly title = 'Prove the signs';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The servo that was turned last, and its turn in deg counter-clockwise; null before the first turn. */
+  /** The servo that was turned last, and its turn, deg counter-clockwise; null before the first turn. */
   private lastTurn: { servo: number; turnDeg: number } | null = null;
-  /** The mistake that the user has observed: another servo turned, or none; null without a mistake. */
-  private observedMistake: 'other' | 'none' | null = null;
+  /** The fault that the user has observed: another servo turned, or none; null without a fault. */
+  private observedFault: 'other' | 'none' | null = null;
 
   reset(): void {
-    this.lastTurn = this.observedMistake = null;
+    this.lastTurn = this.observedFault = null;
   }
 
   selectedServo({ servo }: StepTools): SelectedServo {
@@ -30,12 +30,12 @@ export class SignsStep implements Step {
 
   makeElements(tools: StepTools): Node[] {
     const { servo } = tools;
-    const wasMoved = this.lastTurn?.servo === servo;
+    const isTurned = this.lastTurn?.servo === servo;
     const name = `A${servo + 1}`;
     return [
       paragraph(`${servoName(servo)}: one servo alone turns by 10°. Look from above.`),
-      row(button(wasMoved ? `Turn ${name} once more` : `Turn ${name}`, () => this.turnServo(tools), !wasMoved)),
-      ...(wasMoved ? this.makeQuestion(tools) : []),
+      row(button(isTurned ? `Turn ${name} once more` : `Turn ${name}`, () => this.turnServo(tools), !isTurned)),
+      ...(isTurned ? this.makeQuestion(tools) : []),
       note('Do not leave this step out: the robot would take an unsafe pose for a safe one.'),
     ];
   }
@@ -44,7 +44,7 @@ export class SignsStep implements Step {
     const { servo, session } = tools;
     const { pin } = session.description.servos[servo];
     const observe = (observation: 'other' | 'none') => () => {
-      this.observedMistake = observation;
+      this.observedFault = observation;
       tools.redraw();
     };
     const advice = {
@@ -59,7 +59,7 @@ export class SignsStep implements Step {
         button('Another servo turned', observe('other')),
         button('Nothing turned', observe('none')),
       ),
-      ...(this.observedMistake ? [paragraph(advice[this.observedMistake])] : []),
+      ...(this.observedFault ? [paragraph(advice[this.observedFault])] : []),
     ];
   }
 
@@ -67,7 +67,7 @@ export class SignsStep implements Step {
     const { servo } = tools;
     tools.run(async (guide) => {
       const turn = await guide.turnForSign(servo);
-      this.observedMistake = null;
+      this.observedFault = null;
       this.lastTurn = { servo, turnDeg: turn };
       return `A${servo + 1} was told to turn ${Math.abs(turn)}° ${turn > 0 ? 'counter-clockwise' : 'clockwise'}.`;
     });

@@ -5,23 +5,23 @@ import type { Session } from '../../session';
 import type { WriteContent, Writer } from '../writer';
 import type { SelectedServo } from './drawing';
 
-/** What the dialog offers to its steps. */
+/** The state and the functions that the dialog offers to its steps. */
 export interface StepTools {
   readonly session: Session;
   readonly writer: Writer;
-  /** The guide through the calibration of the connected robot; null until the robot has sent its calibration. */
+  /** The guide through the calibration of the connected robot; null until the robot's calibration is read. */
   readonly guide: BoardGuide | null;
-  /** The servo that a step is about, 0 to 3. */
+  /** The servo that the user has selected, 0 to 3. */
   servo: number;
-  /** Connects or disconnects a board on USB. */
+  /** Connects a board on USB, or disconnects a board. */
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
   write(content: WriteContent): void;
-  /** Runs an action with the robot's guide; shows the returned message or the reason of a failure. */
+  /** Runs an action with the robot's guide; shows the message that it returns, or the reason if it fails. */
   run(action: (guide: Guide) => Promise<string>): void;
-  /** Lets the robot stand, with the servos that were turned back at neutral. */
+  /** Lets the robot stand, with all servos back at neutral. */
   stand(): void;
-  /** Sets the calibration in the text of a file named `name`, without saving it in the board. */
+  /** Applies the calibration in the text of a file named `name`, without saving it in the board. */
   setCalibration(text: string, name: string): void;
   /** Marks a step, or a part of a step, as done. */
   markDone(step: string): void;
@@ -29,7 +29,7 @@ export interface StepTools {
   isDone(step: string): boolean;
   /** Goes to another step. */
   goTo(step: string): void;
-  /** Redraws the step. */
+  /** Shows the current step again. */
   redraw(): void;
 }
 
@@ -40,7 +40,7 @@ export interface Step {
   readonly title: string;
   /** True if the step needs a robot with this firmware. */
   readonly needsRobot: boolean;
-  /** True if the step is done for one servo at a time, which the user selects. */
+  /** True if the step treats one servo at a time, which the user selects. */
   readonly isPerServo?: boolean;
   /** Makes the elements of the step. */
   makeElements(tools: StepTools): Node[];

@@ -1,9 +1,9 @@
-// The step Trims: the user corrects each crank's angle in small turns, which take effect at once.
+// The step Trims, in which the user corrects each crank's angle in small steps, which take effect at once.
 import { servoName } from './drawing';
 import { button, note, row, paragraph } from '../make';
 import type { Step } from './step';
 
-/** Coarse and fine changes of the trim, deg counter-clockwise. */
+/** The changes of the trim that the buttons make, deg counter-clockwise. */
 const TRIM_CHANGES = [0.5, 0.1, -0.1, -0.5];
 
 export const trimsStep: Step = {

@@ -1,4 +1,4 @@
-// The step First walk: the robot walks with its new calibration, before that is saved.
+// The step First walk, in which the robot walks with its new calibration before it is saved.
 import { button, note, row, warning, paragraph } from '../make';
 import { findUnprovenServos } from './signs';
 import type { Step } from './step';
