@@ -145,7 +145,7 @@ fn the_depth_of_compiled_c_is_an_upper_bound_near_the_measured_depth() {
 }
 
 #[test]
-fn a_function_that_calls_itself_is_refused_by_name() {
+fn recursion_is_refused_with_the_name_of_the_function() {
     let image = compile_c(
         "#include <avr/io.h>
         __attribute__((noinline)) void deeper(unsigned char n) {
@@ -163,7 +163,7 @@ fn a_function_that_calls_itself_is_refused_by_name() {
 }
 
 #[test]
-fn a_call_of_a_computed_address_is_refused_by_name() {
+fn an_indirect_call_is_refused_with_the_name_of_the_function() {
     let image = compile_c(
         "#include <avr/io.h>
         static void one(void) { GPIOR0 = 1; }
@@ -187,7 +187,7 @@ fn a_call_of_a_computed_address_is_refused_by_name() {
 }
 
 #[test]
-fn code_without_a_bound_is_refused() {
+fn code_without_a_bound_on_its_stack_is_refused() {
     let programs = [
         ("again: push r16 $ rjmp again", "more or less"),
         (

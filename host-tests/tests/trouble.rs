@@ -58,19 +58,19 @@ fn seed_and_number_determine_a_scenario() {
 }
 
 #[test]
-fn most_patrols_of_the_scenarios_reach_the_wait_for_a_wall() {
+fn most_patrols_of_the_scenarios_reach_the_wait_for_an_obstacle() {
     let image = FirmwareBench::image_with(patrolling_robot());
     let scenarios =
         (0..SCENARIO_COUNT).map(|number| Scenario::generate(seed(), number, patrolling_robot()));
     let patrols = scenarios.filter(|scenario| scenario.activity == Activity::Patrolling);
-    let reaches_wall_wait = |scenario: &Scenario| {
+    let reaches_obstacle_wait = |scenario: &Scenario| {
         let record = play(&image, patrolling_robot(), scenario);
         record
             .printed_lines
             .iter()
             .any(|line| line.text == "# waiting for nose")
     };
-    let walking_count = patrols.filter(reaches_wall_wait).count() as u64;
+    let walking_count = patrols.filter(reaches_obstacle_wait).count() as u64;
     assert!(walking_count > SCENARIO_COUNT / 13 / 2, "{walking_count}");
 }
 

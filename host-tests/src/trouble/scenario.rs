@@ -181,6 +181,7 @@ impl<'a> Script<'a> {
         }
     }
 
+    /// Starts a write of the EEPROM by `rest` or `save`, in some cases while a gait runs.
     fn start_saving(&mut self) {
         match self.rng.u8(0..3) {
             0 => {
@@ -202,6 +203,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(250);
     }
 
+    /// Restarts the program, unless the scenario is still at power-on, and waits for a part of the start.
     fn start_program(&mut self, is_power_on: bool) {
         if !is_power_on {
             match self.rng.u8(0..4) {
@@ -224,6 +226,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(ms);
     }
 
+    /// Sends up to four lines without a wait for their answers, in some cases at rest or while a gait runs.
     fn start_talking(&mut self) {
         match self.rng.u8(0..3) {
             0 => self.say("rest"),

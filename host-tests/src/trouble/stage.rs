@@ -213,6 +213,7 @@ impl Stage<'_> {
         *self.uno.state() == State::Alive
     }
 
+    /// Sets the supply voltage, mV, and records a change.
     fn set_supply(&mut self, mv: f64) {
         let now = self.uno.cycle();
         if self
@@ -295,6 +296,7 @@ impl Stage<'_> {
         }
     }
 
+    /// Ends the scenario and completes its record.
     fn finish(mut self) -> Record {
         self.record_events();
         let mut record = self.record;

@@ -60,12 +60,12 @@ fn the_answer_to_a_line_is_distinguished_from_the_notes_before_it() {
 
 #[test]
 #[should_panic(expected = "no answer to \"x\"")]
-fn a_line_without_an_answer_is_a_failure() {
+fn a_line_without_an_answer_panics() {
     bench().say("x");
 }
 
 #[test]
-fn each_frame_holds_one_pulse_of_each_servo() {
+fn each_frame_has_one_pulse_of_each_servo() {
     let mut bench = bench();
     bench.run_ms(100);
     let mut frames = bench.run_for_frames(10);
@@ -88,7 +88,7 @@ fn each_frame_holds_one_pulse_of_each_servo() {
 }
 
 #[test]
-fn a_function_of_the_program_is_timed_by_its_name() {
+fn the_calls_of_a_function_are_timed_by_its_name() {
     let mut bench = FirmwareBench::with_uno(Uno::with_image(
         compile_c(
             "#include <avr/io.h>
@@ -109,7 +109,7 @@ fn a_function_of_the_program_is_timed_by_its_name() {
 
 #[test]
 #[should_panic(expected = "no function walk")]
-fn a_function_that_does_not_exist_is_a_failure() {
+fn timing_a_function_that_does_not_exist_panics() {
     bench().time_calls("walk", 1);
 }
 

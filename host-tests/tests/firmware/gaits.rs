@@ -88,7 +88,7 @@ fn find_gait_start(
 }
 
 #[test]
-fn the_pulses_of_every_gait_follow_it_frame_by_frame() {
+fn the_pulses_of_every_gait_follow_the_gait_frame_by_frame() {
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             let sent_angles = record_angles(gait, *fidelity);

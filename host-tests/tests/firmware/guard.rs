@@ -85,7 +85,7 @@ fn absolute_pose_command(angles: [f64; 4]) -> String {
 }
 
 #[test]
-fn a_pose_is_accepted_exactly_where_floating_point_finds_it_safe() {
+fn a_pose_is_accepted_exactly_if_floating_point_finds_it_safe() {
     for_each_in_parallel(&[20.0, 40.0, 80.0], |&max_deg| {
         let mut rng = Rng::with_seed(max_deg as u64);
         let mut bench = boot_standing(Fidelity::DataSheet);

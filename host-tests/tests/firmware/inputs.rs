@@ -228,7 +228,7 @@ fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it()
 }
 
 #[test]
-fn contacts_on_the_ports_of_the_servos_leave_every_pulse_as_it_is() {
+fn contacts_on_the_servos_ports_change_no_pulse() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_with_inputs(&patrol_robot_with_pins("D8", "D4"), fidelity);
         bench.uno.set_contact(Pin::d(8), false);

@@ -51,7 +51,8 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
 }
 
 #[test]
-fn once_pulses_are_disallowed_the_current_one_ends_no_other_begins_and_the_ticks_go_on() {
+fn once_pulses_are_disallowed_the_current_pulse_ends_normally_none_follows_and_the_ticks_continue()
+{
     run_in_both_simulations(|fidelity| {
         // Disallows pulses at 40 moments of a frame: before, during and after each pulse.
         for moment in 0..40 {

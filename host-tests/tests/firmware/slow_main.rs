@@ -81,7 +81,7 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
 }
 
 #[test]
-fn a_rest_instead_of_a_waiting_frame_ends_all_pulses_or_none() {
+fn a_rest_that_replaces_a_pending_frame_ends_all_pulses_or_none() {
     let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
     for delay_cycles in 0..160 {
         let frame_start = run.run_to_next_frame();
@@ -189,7 +189,7 @@ fn ticks_that_main_misses_are_skipped_and_make_no_servo_leap() {
 }
 
 #[test]
-fn old_widths_repeat_while_main_stands_still() {
+fn the_last_widths_repeat_while_main_is_stalled() {
     let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
     let start = run.run_to_next_frame();
     run.bench.uno.stall_main(5 * FRAME_CYCLES);

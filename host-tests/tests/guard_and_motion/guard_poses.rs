@@ -44,6 +44,7 @@ struct Findings {
 }
 
 impl Findings {
+    /// Adds the guard's errors and decision at a pose, and asserts that the decision is right outside the bands.
     fn add_pose(&mut self, robot: &Robot, pose: &Pose) {
         let firmware = robot.firmware();
         let clearance = Clearance::of(firmware, pose);
@@ -216,7 +217,7 @@ fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
 }
 
 #[test]
-fn the_guards_decision_changes_at_the_limit_of_floating_point() {
+fn the_guards_decision_changes_at_the_limit_computed_in_floating_point() {
     for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut rng = rng(200 + robot_index as u64);
         let firmware = robot.firmware();

@@ -30,6 +30,7 @@ pub struct Shell {
 }
 
 impl Shell {
+    /// Starts a program with arguments and additional environment variables.
     pub fn start(program: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Self {
         let mut command = Command::new("env");
         command.args(["--default-signal=INT,QUIT", program]);

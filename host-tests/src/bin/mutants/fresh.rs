@@ -30,7 +30,7 @@ const EXCLUDED_PATH_PARTS: [&str; 7] = [
     "section/seal.rs",
 ];
 
-/// Operators, constants and methods, each with the wrong one that replaces it.
+/// Operators, constants and methods, each with its wrong replacement.
 const REPLACEMENTS: [(&str, &str); 19] = [
     (" == ", " != "),
     (" != ", " == "),

@@ -269,6 +269,7 @@ impl ScratchTree {
         outcome.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.description))
     }
 
+    /// Builds the firmware of the copy and runs the tests of the running firmware.
     fn judge_in_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
         let Some(elf) = self.build_firmware()? else {
             return Ok(Outcome::DoesNotCompile);

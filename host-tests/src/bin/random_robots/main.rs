@@ -26,6 +26,7 @@ fn main() -> ExitCode {
     }
 }
 
+/// Generates the robots and writes their files.
 fn run(arguments: &[String]) -> Result<(), String> {
     let [folder, seed, count] = arguments else {
         return Err("the arguments are a folder, a seed and a count".into());
