@@ -170,9 +170,13 @@ impl Robot {
     /// compares the bound with the simulated UNO.
     #[must_use]
     pub fn max_search_cycles(&self) -> usize {
+        const CYCLES_PER_SEARCH: usize = 6_000;
+        const CYCLES_PER_NAME: usize = 1_400;
+        const CYCLES_PER_CHARACTER: usize = 92;
         let names = self.gaits.iter().map(CheckedGait::name);
         let names = names.chain(self.routines.iter().map(Routine::name));
-        6_000 + names.map(|name| 1_400 + 92 * name.len()).sum::<usize>()
+        let cycles_of = |name: &str| CYCLES_PER_NAME + CYCLES_PER_CHARACTER * name.len();
+        CYCLES_PER_SEARCH + names.map(cycles_of).sum::<usize>()
     }
 
     /// Makes the section with the maps; `None` if it is longer than [`SPACE_BYTES`].

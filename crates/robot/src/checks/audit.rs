@@ -130,7 +130,9 @@ pub(crate) fn check_gait(
         })?;
         for violation in measures.limits.violations(&solution) {
             worst_violation = Some(match worst_violation {
-                Some(earlier) if !is_worse_violation(violation, earlier.1) => earlier,
+                Some((earlier_phase, earlier)) if !is_worse_violation(violation, earlier) => {
+                    (earlier_phase, earlier)
+                }
                 _ => (phase, violation),
             });
         }

@@ -11,8 +11,10 @@ use crate::robot::Robot;
 
 /// Smallest change of a movement that gets a row in the table, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
-/// Smallest noticeable movement in a cycle: mm ahead, deg of turn.
-const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
+/// Smallest noticeable distance of a cycle, mm.
+const MIN_DISTANCE_MM: f64 = 1.0;
+/// Smallest noticeable turn of a cycle, deg.
+const MIN_TURN_DEG: f64 = 0.5;
 /// Largest difference (mm or deg) at which two movements count as those of a gait and of its mirror image or reverse.
 const MIRROR_TOLERANCE: f64 = 0.02;
 
@@ -311,7 +313,7 @@ fn distinct_gaits(
             is_close(movement.forward, listed.forward) && is_close(movement.turn, listed.turn)
         };
         let moves_noticeably =
-            movement.forward.abs() > MIN_MOVEMENT.0 || movement.turn.abs() > MIN_MOVEMENT.1;
+            movement.forward.abs() > MIN_DISTANCE_MM || movement.turn.abs() > MIN_TURN_DEG;
         if moves_noticeably && !gaits.iter().any(is_mirror_or_reverse) {
             gaits.push((gait, movement));
         }

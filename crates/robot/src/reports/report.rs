@@ -35,12 +35,14 @@ pub struct Row {
 impl Row {
     /// True if the gait moves the robot, but its fastest servo stays below [`SLOW_SPEED`].
     fn is_slow(&self) -> bool {
-        /// Smallest speed at which a gait counts as moving the robot: mm/s ahead, deg/s of turn.
-        const MIN_SPEEDS: (f64, f64) = (5.0, 2.0);
-        let speed_of = |component: Option<f64>| component.unwrap_or_default().abs() / self.period;
+        /// Smallest speed ahead at which a gait counts as moving the robot, mm/s.
+        const MIN_SPEED_MM_S: f64 = 5.0;
+        /// Smallest rate of turn at which a gait counts as moving the robot, deg/s.
+        const MIN_TURN_RATE_DEG_S: f64 = 2.0;
+        let rate_of = |component: Option<f64>| component.unwrap_or_default().abs() / self.period;
         let movement = &self.movement;
-        let is_walking =
-            speed_of(movement.forward) >= MIN_SPEEDS.0 || speed_of(movement.turn) >= MIN_SPEEDS.1;
+        let is_walking = rate_of(movement.forward) >= MIN_SPEED_MM_S
+            || rate_of(movement.turn) >= MIN_TURN_RATE_DEG_S;
         is_walking && self.audit.peak_speed.speed < SLOW_SPEED
     }
 }
@@ -199,6 +201,7 @@ impl fmt::Display for Report {
                 line_share,
                 driven_movement,
             } = row;
+            let (min_stroke, max_stroke) = audit.stroke_range;
             write!(
                 f,
                 "{name:<width$} {period:>6.2} {:>6.1} {:>5}   {:>6.4}  {:>6.4}  {:>6.3} {:>6.3} {:>6.3}   {:>+6.1} {:>+6.1}  ",
@@ -209,8 +212,8 @@ impl fmt::Display for Report {
                 audit.type2.value,
                 audit.type1.value,
                 audit.leg.value,
-                round_to(audit.stroke_range.0, 1),
-                round_to(audit.stroke_range.1, 1),
+                round_to(min_stroke, 1),
+                round_to(max_stroke, 1),
             )?;
             write!(
                 f,

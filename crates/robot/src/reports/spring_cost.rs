@@ -18,8 +18,10 @@ pub struct SpringCost {
     pub share_of_rigid: Option<f64>,
 }
 
-/// Smallest movement of a cycle on rigid legs for which a share is given: mm ahead, deg of turn.
-const MIN_MOVEMENT: (f64, f64) = (1.0, 0.5);
+/// Smallest distance of a cycle on rigid legs for which a share is given, mm.
+const MIN_DISTANCE_MM: f64 = 1.0;
+/// Smallest turn of a cycle on rigid legs for which a share is given, deg.
+const MIN_TURN_DEG: f64 = 0.5;
 
 impl SpringCost {
     /// Compares a gait on this ground with the same gait on rigid legs. Returns `None` if the drive is rigid, so
@@ -38,9 +40,9 @@ impl SpringCost {
         let forward_share = share_of(
             cycle.travel.forward,
             rigid_prediction.forward,
-            MIN_MOVEMENT.0,
+            MIN_DISTANCE_MM,
         );
-        let turn_share = share_of(cycle.travel.turn, rigid_prediction.turn, MIN_MOVEMENT.1);
+        let turn_share = share_of(cycle.travel.turn, rigid_prediction.turn, MIN_TURN_DEG);
         Some(Self {
             movement: rigid_prediction.known_components_of(cycle.travel),
             max_lag: cycle.max_lag,

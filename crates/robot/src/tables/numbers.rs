@@ -389,13 +389,13 @@ mod tests {
     fn the_needed_travel_is_the_range_of_the_sweeps_of_all_gaits() {
         for (name, robot) in all_robots() {
             let firmware = robot.firmware();
-            let mut widest_sweeps = [(0, 0); 4];
+            let mut sweep_ranges = [(0, 0); 4];
             for gait in GaitId::all(firmware.gait_count()) {
                 let gait = firmware.gait(gait);
                 for phase in (0..1 << 24).step_by(1 << 8) {
                     let pose = gait.pose(firmware.waves(), phase);
-                    for (range, sweep) in widest_sweeps.iter_mut().zip(pose.0) {
-                        *range = (range.0.min(sweep.0), range.1.max(sweep.0));
+                    for ((min, max), sweep) in sweep_ranges.iter_mut().zip(pose.0) {
+                        (*min, *max) = ((*min).min(sweep.0), (*max).max(sweep.0));
                     }
                 }
             }
@@ -403,7 +403,7 @@ mod tests {
                 let travel = firmware.needed_travel(servo);
                 (travel.min.0, travel.max.0)
             });
-            assert_eq!(needed_travels, widest_sweeps, "{name}");
+            assert_eq!(needed_travels, sweep_ranges, "{name}");
         }
     }
 
