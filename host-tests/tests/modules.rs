@@ -179,12 +179,12 @@ impl Folder {
         // A use of `crate::Name` counts as a use of the module from which the root file exports this name.
         let mut module_by_name: BTreeMap<&str, &str> =
             modules.iter().map(|name| (*name, *name)).collect();
-        for export in self
+        for (_, path) in self
             .root_text
             .split(';')
             .filter_map(|item| item.split_once("use "))
         {
-            if let Some((module_name, names)) = export.1.split_once("::")
+            if let Some((module_name, names)) = path.split_once("::")
                 && let Some(module_name) = modules.get(module_name)
             {
                 module_by_name.extend(words_in(names).map(|name| (name, *module_name)));

@@ -240,7 +240,7 @@ fn check_refusals(record: &Record) -> Result<(), String> {
         let have_status = status_before.status_value("gait").is_some()
             && status_after.status_value("gait").is_some();
         let span = answer_before.cycle..answer_after.cycle;
-        let motion_ended = record.printed_lines.iter().any(|line| {
+        let has_motion_ended = record.printed_lines.iter().any(|line| {
             let reports_end =
                 line.text == "# done" || line.text.contains("as long as deadman says");
             reports_end && span.contains(&line.cycle)
@@ -248,7 +248,7 @@ fn check_refusals(record: &Record) -> Result<(), String> {
         // A routine continues by itself, for example from a motion to a rest.
         let is_routine = status_before.status_value("gait") == Some(PATROL)
             || status_after.status_value("gait") == Some(PATROL);
-        let may_have_changed = motion_ended
+        let may_have_changed = has_motion_ended
             || is_routine
             || record.is_troubled(answer_before.cycle, answer_after.cycle);
         if !is_refused || !have_status || may_have_changed {

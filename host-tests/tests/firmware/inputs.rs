@@ -12,7 +12,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 use crate::measurements::{measure_widths, power_cycle, run_for_pulses};
 use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
 
-/// The input pins in docs/gaits.md.
+/// The pins of the button and of the obstacle switch in docs/gaits.md.
 const BUTTON: Pin = Pin::a(1);
 const NOSE: Pin = Pin::a(2);
 

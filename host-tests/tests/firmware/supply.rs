@@ -11,7 +11,7 @@ use crate::{Status, boot_and_command, boot_standing, first_moving_gait};
 const MAX_BOARD_ERROR_V: f64 = 0.04;
 
 /// The first pin that can measure a rail, by its Arduino number.
-const FIRST_ANALOG_PIN: u8 = 14;
+const FIRST_ANALOGUE_PIN: u8 = 14;
 
 /// Returns the reaction and the voltage, V, of each note about the supply from line `first_line` on.
 fn read_supply_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(String, f64)> {
@@ -228,7 +228,7 @@ fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
 fn assert_no_rail() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let servos = robot().servos().each_ref().map(|servo| servo.pin);
-    let free_pins: Vec<u8> = (FIRST_ANALOG_PIN..FIRST_ANALOG_PIN + 6)
+    let free_pins: Vec<u8> = (FIRST_ANALOGUE_PIN..FIRST_ANALOGUE_PIN + 6)
         .filter(|pin| !servos.contains(pin))
         .collect();
     assert!(free_pins.len() >= 2, "{free_pins:?}");

@@ -59,14 +59,14 @@ impl Findings {
         }
         let truth = match ExactConditions::of(robot, chassis_angles_deg(firmware, pose)) {
             Ok(truth) => truth,
-            Err(fault) => {
+            Err(error) => {
                 // Index 0 is the head's type-2 margin, 1 the tail's. If the tail does not close, the guard may name the
                 // head.
-                let unclosed_five_bar_index = index_of_unclosed_five_bar(&fault)
+                let unclosed_five_bar_index = index_of_unclosed_five_bar(&error)
                     .expect("the sides of these robots always close");
                 assert!(
                     hazard_index.is_some_and(|index| index <= unclosed_five_bar_index),
-                    "{pose:?}: {fault}, {hazard:?}"
+                    "{pose:?}: {error}, {hazard:?}"
                 );
                 return;
             }

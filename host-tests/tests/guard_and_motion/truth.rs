@@ -242,8 +242,8 @@ impl Verdict {
 }
 
 /// Returns the index of the five-bar that does not close; `None` if a side does not close.
-pub fn index_of_unclosed_five_bar(fault: &Infeasible) -> Option<usize> {
-    match fault.part {
+pub fn index_of_unclosed_five_bar(error: &Infeasible) -> Option<usize> {
+    match error.part {
         Part::End(lizard_kinematics::End::Head) => Some(0),
         Part::End(lizard_kinematics::End::Tail) => Some(1),
         Part::Side(_) => None,

@@ -122,11 +122,11 @@ mod tests {
         assert_eq!(changed_text.as_deref(), Ok("let b = 0;\nlet a = 2;"));
         let missing_error = mutants[0]
             .apply("let a = 3;\n")
-            .expect_err("the old text is missing");
+            .expect_err("a missing old text must be refused");
         assert!(missing_error.contains("missing"), "{missing_error}");
         let duplicate_error = mutants[0]
             .apply("let a = 1;\nlet a = 1;\n\n")
-            .expect_err("the old text occurs twice");
+            .expect_err("an ambiguous old text must be refused");
         assert!(duplicate_error.contains("2 times"), "{duplicate_error}");
     }
 
@@ -136,7 +136,7 @@ mod tests {
             ("file a.rs\n-x\n+y\n", "line 1"),
             ("\nfile a\nwhat b\n", "line 3"),
         ] {
-            let error = read(list).expect_err("the list is invalid");
+            let error = read(list).expect_err("an invalid list must be refused");
             assert!(error.starts_with(line), "{error}");
         }
     }
