@@ -9,7 +9,7 @@ use crate::gait::Gait;
 use crate::likeness::{self, GaitMatch};
 use crate::measured_gait::MeasuredGait;
 use crate::path::{PathPoint, unwrap_headings};
-use crate::scene::Scene;
+use crate::scene::{POSE_PARAMETER_COUNT, SHARED_PARAMETER_COUNT, Scene};
 use crate::trouble::Trouble;
 use crate::walk::{Walk, travel_components};
 use crate::{cycle_path, walks};
@@ -121,8 +121,11 @@ impl AnalysedFilm {
     /// The variances of the mean cycle that result from the covariance of the scene: forward and left, mm^2, and turn,
     /// deg^2.
     fn scene_variances(&self, cycles: &Cycles) -> [f64; 3] {
-        // A camera that moves has its own pose in each picture, so only the five shared parameters count.
-        let parameter_count = if self.camera.has_camera_moved { 5 } else { 11 };
+        // A camera that moves has its own pose in each picture, so only the shared parameters count.
+        let parameter_count = match self.camera.has_camera_moved {
+            true => SHARED_PARAMETER_COUNT,
+            false => SHARED_PARAMETER_COUNT + POSE_PARAMETER_COUNT,
+        };
         let scene = &self.scene;
         let nearest_frame = |time: &f64| {
             let frames = self.frames.iter();

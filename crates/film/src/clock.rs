@@ -99,7 +99,7 @@ impl Movements {
         let misfit = squared_norm(&self.residuals(gait, start, period));
         let (slow_misfit, multiple) = self.misfit_at_best_multiple(gait);
         if slow_misfit < MAX_MISFIT_RATIO * (misfit / self.sum_of_squares()).min(1.0) {
-            return Err(Trouble::AnotherPace { ratio: multiple });
+            return Err(Trouble::WrongPace { ratio: multiple });
         }
         let squares_of_both = |(time, measured): &(f64, [f64; 3])| {
             let phase = (time - start) / period;
@@ -107,7 +107,7 @@ impl Movements {
             movement_length(*measured).powi(2) + movement_length(predicted).powi(2)
         };
         if misfit > MAX_MISFIT_SHARE * self.movements.iter().map(squares_of_both).sum::<f64>() {
-            return Err(Trouble::NotThisGait {
+            return Err(Trouble::GaitMismatch {
                 period: gait.period,
             });
         }

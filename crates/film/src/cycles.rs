@@ -186,7 +186,7 @@ fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], Trouble> 
         let distances = travels
             .iter()
             .map(|(_, travel)| travel.forward.hypot(travel.left));
-        return Err(Trouble::NotMoved {
+        return Err(Trouble::NoMovement {
             distance: distances.fold(0.0, f64::max),
             turn: travels
                 .iter()

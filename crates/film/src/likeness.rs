@@ -53,7 +53,7 @@ pub(crate) fn match_gait(path: &[PathPoint], gaits: &[Gait]) -> GaitMatch {
     match fits[..] {
         // A gait at a slow pace can resemble another at its usual pace, so a better fit at a slow pace counts first.
         _ if best_slow_misfit < best_misfit.min(MAX_MISFIT) => {
-            GaitMatch::NoMatch(Trouble::AnotherPace { ratio: pace_ratio })
+            GaitMatch::NoMatch(Trouble::WrongPace { ratio: pace_ratio })
         }
         [(_, best), (second_misfit, second_best), ..]
             if best_misfit < MAX_MISFIT && second_misfit < MIN_MISFIT_RATIO * best_misfit =>
@@ -61,7 +61,7 @@ pub(crate) fn match_gait(path: &[PathPoint], gaits: &[Gait]) -> GaitMatch {
             GaitMatch::Ambiguous { best, second_best }
         }
         [(_, best), ..] if best_misfit < MAX_MISFIT => GaitMatch::Unique(best),
-        [(_, best), ..] => GaitMatch::NoMatch(Trouble::NotThisGait {
+        [(_, best), ..] => GaitMatch::NoMatch(Trouble::GaitMismatch {
             period: gaits[best].period,
         }),
         [] => GaitMatch::NoMatch(first_trouble.unwrap_or(Trouble::NoGait)),

@@ -99,7 +99,7 @@ impl MeasuredServo {
         let rests: Vec<Option<f64>> = (0..orders.len())
             .map(|i| horn_path.rest_angle(first_order_seconds, ORDER_INTERVAL, i))
             .collect();
-        let [gain, hysteresis] = fit_gain(&orders, &rests).ok_or(ServoTrouble::StepsNotMatched)?;
+        let [gain, hysteresis] = fit_gain(&orders, &rests).ok_or(ServoTrouble::StepMismatch)?;
         let large_steps = horn_path.large_steps(first_order_seconds, &rests);
         let too_few_pictures = ServoTrouble::TooFewPictures {
             rate: horn_path.picture_rate(),
@@ -347,7 +347,7 @@ impl HornPath {
         let turn =
             angle_values().fold(f64::MIN, f64::max) - angle_values().fold(f64::MAX, f64::min);
         if turn <= MIN_TURN {
-            return Err(ServoTrouble::NotTurned {
+            return Err(ServoTrouble::NoTurn {
                 turn: turn.max(0.0),
             });
         }
@@ -364,14 +364,14 @@ impl HornPath {
                 .find_best_first_order(orders, multiple * ORDER_INTERVAL)
                 .is_some_and(|best| is_explained(&best))
             {
-                return Err(ServoTrouble::AnotherStepInterval { ratio: multiple });
+                return Err(ServoTrouble::WrongStepInterval { ratio: multiple });
             }
         }
         let seconds = self.angles[self.angles.len() - 1].0 - self.angles[0].0;
         let needed = ORDER_INTERVAL * orders.len() as f64;
         Err(match seconds < needed - ORDER_INTERVAL {
             true => ServoTrouble::TooShort { seconds, needed },
-            false => ServoTrouble::StepsNotMatched,
+            false => ServoTrouble::StepMismatch,
         })
     }
 

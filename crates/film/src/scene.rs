@@ -17,7 +17,9 @@ use crate::sheet::{self, DECK_TAG_ID, FLOOR_TAG_COUNT, TAGS_PER_STRIP};
 use crate::trouble::Trouble;
 
 /// Number of parameters that all views share: focal length, ink spread, and the second strip's place.
-const SHARED_PARAMETER_COUNT: usize = 5;
+pub(crate) const SHARED_PARAMETER_COUNT: usize = 5;
+/// Number of parameters of a camera's pose.
+pub(crate) const POSE_PARAMETER_COUNT: usize = 6;
 /// Standard deviation of a floor tag's corner in the mean over a film, px. More pictures do not reduce it, since the
 /// pixel grid is the same in all of them.
 const FLOOR_SIGMA: f64 = 0.03;
@@ -81,7 +83,7 @@ impl Scene {
         let corner_error = FLOOR_SIGMA
             * (floor_residuals.iter().map(|r| r * r).sum::<f64>() / corner_count as f64).sqrt();
         if !corner_error.is_finite() || corner_error > MAX_CORNER_ERROR {
-            return Err(Trouble::NotThisSheet {
+            return Err(Trouble::SheetMismatch {
                 error: corner_error,
             });
         }
@@ -91,7 +93,7 @@ impl Scene {
                 edge: sheet::FLOOR_TAG_EDGE + 2.0 * ink_spread / dimensions.print_scale,
             });
         }
-        let kept_parameter_count = SHARED_PARAMETER_COUNT + 6;
+        let kept_parameter_count = SHARED_PARAMETER_COUNT + POSE_PARAMETER_COUNT;
         let degrees_of_freedom = (2 * corner_count
             + views
                 .iter()
@@ -353,7 +355,13 @@ fn residuals(
     };
     let cameras: Vec<Camera> = views
         .iter()
-        .map(|_| Camera::new(shared[0], dimensions.picture_size, next_parameters(6)))
+        .map(|_| {
+            Camera::new(
+                shared[0],
+                dimensions.picture_size,
+                next_parameters(POSE_PARAMETER_COUNT),
+            )
+        })
         .collect();
     for (view, camera) in views.iter().zip(&cameras) {
         all_residuals.extend(floor_residuals(

@@ -7,7 +7,7 @@ pub enum ServoTrouble {
     #[error(
         "the horn did not turn: {turn:.1} deg at most; is this the right servo, and does it have power?"
     )]
-    NotTurned {
+    NoTurn {
         /// Largest turn, deg.
         turn: f64,
     },
@@ -26,7 +26,7 @@ pub enum ServoTrouble {
         "the steps take {ratio} times as long as they should: for a film in slow motion, give with --fps the rate at \
          which it was taken"
     )]
-    AnotherStepInterval {
+    WrongStepInterval {
         /// Measured time of a step divided by the planned one.
         ratio: f64,
     },
@@ -35,7 +35,7 @@ pub enum ServoTrouble {
         "the horn's angles do not match the steps of `lizard measure steps`: does the film show all of them, and does \
          the servo follow?"
     )]
-    StepsNotMatched,
+    StepMismatch,
     /// The film has too few pictures of the turning horn.
     #[error(
         "the card is visible in too few pictures while the horn turns ({rate:.0} pictures a second): film at 120 pictures a \
@@ -58,12 +58,12 @@ pub enum ServoTrouble {
     },
     /// The rates in both directions differ more without the load than with it.
     #[error(
-        "the servo's rates to both sides differ more without the load than with it: were the two films swapped?"
+        "the servo's rates in the two directions differ more without the load than with it: were the two films swapped?"
     )]
     FilmsSwapped,
     /// The load does not slow the servo down enough.
     #[error(
-        "the load makes the servo slower by {percent:.1} % with an error of {error:.1} %: too little to compute its torque; \
+        "the load slows the servo by {percent:.1} % with an error of {error:.1} %: too little to compute its torque; \
          take a heavier weight, or film more pictures a second"
     )]
     LoadTooSmall {

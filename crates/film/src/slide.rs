@@ -52,7 +52,7 @@ pub enum SlideTrouble {
         "the robot did not slide: {distance:.1} mm at a tilt of up to {tilt:.1} deg; lift the board farther, and keep the \
          camera where it is"
     )]
-    NotSlid {
+    NoSlide {
         /// Largest distance from the place of rest, mm.
         distance: f64,
         /// Largest tilt, deg.
@@ -176,7 +176,7 @@ impl Slide {
             .iter()
             .position(|observation| distance_of(observation) > MIN_SLIDE)
         else {
-            return Err(SlideTrouble::NotSlid {
+            return Err(SlideTrouble::NoSlide {
                 distance: observations.iter().map(distance_of).fold(0.0, f64::max),
                 tilt: max_tilt(&observations).to_degrees(),
             });

@@ -39,7 +39,7 @@ pub enum Trouble {
     /// A floor tag is not completely visible in any picture.
     #[error(
         "tag {id} of the floor is not completely visible in any picture: each of the {FLOOR_TAG_COUNT} tags of the \
-         two strips has to be, with its white edge"
+         two strips has to be, with its white margin"
     )]
     NoFloorTag {
         /// Id of the tag.
@@ -47,8 +47,8 @@ pub enum Trouble {
     },
     /// The deck tag is visible too rarely.
     #[error(
-        "the tag on the robot's deck, or on the horn, is in only {visible_count} of {pictures} pictures; nine of ten \
-         have to show it"
+        "the tag on the robot's deck, or on the horn, is in only {visible_count} of {pictures} pictures; at least \
+         nine in ten have to show it"
     )]
     DeckTagTooRare {
         /// Number of pictures that show it.
@@ -66,14 +66,14 @@ pub enum Trouble {
         pictures: usize,
     },
     /// No camera could see the floor tags in this arrangement.
-    #[error("no camera sees the floor's tags like that: are they flat on the floor?")]
+    #[error("no camera could see the floor's tags like this: are they flat on the floor?")]
     NoCamera,
     /// The floor tags are not arranged as on the sheet.
     #[error(
-        "the floor's tags do not lie as on the sheet, by {error:.1} px: both tags of a strip have to be on one \
-         piece of paper, flat on the floor"
+        "the floor's tags are not arranged as on the sheet (they are off by {error:.1} px): both tags of a strip have \
+         to be on one piece of paper, flat on the floor"
     )]
-    NotThisSheet {
+    SheetMismatch {
         /// Root-mean-square error of a corner, px.
         error: f64,
     },
@@ -112,7 +112,7 @@ pub enum Trouble {
     #[error(
         "the robot did not move: {distance:.1} mm and {turn:.1} deg in the time of a cycle at most"
     )]
-    NotMoved {
+    NoMovement {
         /// Largest distance within the duration of a cycle, mm.
         distance: f64,
         /// Largest turn within the duration of a cycle, deg.
@@ -120,8 +120,8 @@ pub enum Trouble {
     },
     /// The film has too few cycles.
     #[error(
-        "the film shows {cycles:.1} cycles of {period:.2} s; it takes two whole ones and some time before \
-         and after: film at least four"
+        "the film shows {cycles:.1} cycles of {period:.2} s; two complete ones and some time before and \
+         after them are needed: film at least four"
     )]
     TooShort {
         /// Number of cycles.
@@ -134,7 +134,7 @@ pub enum Trouble {
         "the cycles take {ratio} times as long as they should: give the pace with --speed (a weak supply halves it), \
          or, for a film in slow motion, the rate at which it was taken with --fps"
     )]
-    AnotherPace {
+    WrongPace {
         /// Measured duration of a cycle divided by the predicted one.
         ratio: u32,
     },
@@ -143,7 +143,7 @@ pub enum Trouble {
         "the path is not that of this gait in cycles of {period:.2} s: was it another gait, another pace, several gaits \
          without a rest between them, or does the arrow of the deck's card not point to the head?"
     )]
-    NotThisGait {
+    GaitMismatch {
         /// Duration of a cycle, s.
         period: f64,
     },

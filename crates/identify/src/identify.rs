@@ -59,7 +59,7 @@ pub fn identify(
             || movement.pace <= 0.0
             || movement.error.iter().any(|error| *error < 0.0)
         {
-            return Err(Trouble::InvalidFigure(movement.gait.clone()));
+            return Err(Trouble::InvalidValue(movement.gait.clone()));
         }
         let prediction = robot.predict(gait);
         for (i, component) in [prediction.forward, prediction.left, prediction.turn]

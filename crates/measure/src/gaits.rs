@@ -173,7 +173,7 @@ impl<'a> Gaits<'a> {
                 ),
                 true,
             ),
-            GaitMatch::NoMatch(Trouble::NotThisGait { .. }) => (
+            GaitMatch::NoMatch(Trouble::GaitMismatch { .. }) => (
                 "the path is like no gait of robot.toml at this pace".to_owned(),
                 true,
             ),
@@ -209,7 +209,7 @@ impl<'a> Gaits<'a> {
     /// The message for a walk that does not fit its gait, with the gait that it matches instead.
     fn mismatch_message(&self, walk: Walk, candidate: &Candidate, trouble: Trouble) -> String {
         let matching_name = match trouble {
-            Trouble::NotThisGait { .. } | Trouble::AnotherPace { .. } => {
+            Trouble::GaitMismatch { .. } | Trouble::WrongPace { .. } => {
                 self.find_matching_gait(walk)
             }
             _ => None,

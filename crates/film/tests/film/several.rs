@@ -96,7 +96,7 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
     let trouble = analysed_film
         .measure(&gaits[2], Some(walks[1]))
         .expect_err("the walk has the gait `left`");
-    assert!(matches!(trouble, Trouble::NotThisGait { .. }), "{trouble}");
+    assert!(matches!(trouble, Trouble::GaitMismatch { .. }), "{trouble}");
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_matches_no_gait() {
     let walks = half_speed.walks(2.0 * shortest_rest(&gaits));
     assert_eq!(
         half_speed.match_gait(&gaits, walks[0]),
-        GaitMatch::NoMatch(Trouble::AnotherPace { ratio: 2 })
+        GaitMatch::NoMatch(Trouble::WrongPace { ratio: 2 })
     );
     let unknown = paper_gait("right");
     let (analysed_film, _) = film_walks(&[(&unknown, 4)], 1.0);
@@ -160,9 +160,9 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
                 Err(trouble) => assert!(
                     matches!(
                         trouble,
-                        Trouble::NotThisGait { .. }
+                        Trouble::GaitMismatch { .. }
                             | Trouble::MovementChanges { .. }
-                            | Trouble::AnotherPace { .. }
+                            | Trouble::WrongPace { .. }
                     ),
                     "{trouble}"
                 ),

@@ -76,7 +76,7 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
         ..SLIPPERY
     });
     assert!(
-        matches!(not_slid, SlideTrouble::NotSlid { tilt, .. } if (tilt - 12.0).abs() < 1.0),
+        matches!(not_slid, SlideTrouble::NoSlide { tilt, .. } if (tilt - 12.0).abs() < 1.0),
         "{not_slid}"
     );
     let moving = reason_of(Board {

@@ -116,7 +116,7 @@ fn a_card_whose_arrow_points_to_the_tail_is_reported_as_another_gait() {
     let trouble = film
         .measure(FULL_SCALE, &gait)
         .expect_err("the robot walks backward");
-    assert!(matches!(trouble, Trouble::NotThisGait { .. }), "{trouble}");
+    assert!(matches!(trouble, Trouble::GaitMismatch { .. }), "{trouble}");
     assert!(trouble.to_string().contains("arrow"), "{trouble}");
 }
 
@@ -231,7 +231,7 @@ fn tags_that_were_cut_apart_and_moved_are_refused() {
     let trouble = trouble_of(&studio, FULL_SCALE);
     assert!(
         matches!(trouble, Trouble::WrongTagSize { edge } if edge > 51.5)
-            || matches!(trouble, Trouble::NotThisSheet { .. }),
+            || matches!(trouble, Trouble::SheetMismatch { .. }),
         "{trouble}"
     );
     let message = trouble.to_string();
@@ -270,7 +270,7 @@ fn trouble_of_robot(pose_at: impl Fn(f64) -> Pose) -> Trouble {
 fn a_robot_that_stands_still_is_reported_as_not_moved() {
     let trouble = trouble_of_robot(|_| [0.0; 3]);
     assert!(
-        matches!(trouble, Trouble::NotMoved { distance, .. } if distance < 1.0),
+        matches!(trouble, Trouble::NoMovement { distance, .. } if distance < 1.0),
         "{trouble}"
     );
 }
@@ -300,14 +300,14 @@ fn a_robot_too_far_from_the_strips_is_refused() {
 #[test]
 fn movements_that_are_not_the_gait_are_refused() {
     let turning = trouble_of_robot(|time| [0.0, 0.0, 0.6 * time]);
-    assert!(matches!(turning, Trouble::NotThisGait { .. }), "{turning}");
+    assert!(matches!(turning, Trouble::GaitMismatch { .. }), "{turning}");
     let backward = trouble_of_robot(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
     assert!(
-        matches!(backward, Trouble::NotThisGait { .. }),
+        matches!(backward, Trouble::GaitMismatch { .. }),
         "{backward}"
     );
     let creeping = trouble_of_robot(|time| [1.5 * time, 0.0, 0.0]);
-    assert!(matches!(creeping, Trouble::NotMoved { .. }), "{creeping}");
+    assert!(matches!(creeping, Trouble::NoMovement { .. }), "{creeping}");
 }
 
 #[test]
@@ -330,7 +330,7 @@ fn cycles_of_twice_or_four_times_the_duration_are_reported_as_another_pace() {
         let trouble = film
             .measure(FULL_SCALE, &gait)
             .expect_err("the cycles are too slow");
-        assert_eq!(trouble, Trouble::AnotherPace { ratio: multiple });
+        assert_eq!(trouble, Trouble::WrongPace { ratio: multiple });
     }
 }
 

@@ -219,14 +219,11 @@ fn a_horn_that_does_not_follow_all_steps_is_refused_with_the_reason() {
             })
             .collect()
     };
-    assert_eq!(trouble_of(&[]), ServoTrouble::NotTurned { turn: 0.0 });
+    assert_eq!(trouble_of(&[]), ServoTrouble::NoTurn { turn: 0.0 });
     let still_path = path_of(&mut |_| 0.0);
-    assert_eq!(
-        trouble_of(&still_path),
-        ServoTrouble::NotTurned { turn: 0.0 }
-    );
+    assert_eq!(trouble_of(&still_path), ServoTrouble::NoTurn { turn: 0.0 });
     let swaying_path = path_of(&mut |seconds| seconds.sin());
-    assert_eq!(trouble_of(&swaying_path), ServoTrouble::StepsNotMatched);
+    assert_eq!(trouble_of(&swaying_path), ServoTrouble::StepMismatch);
     let complete_path = AngleCamera::phone(60.0).path(&Servo::default(), &mut rng);
     let trouble = trouble_of(&complete_path[..complete_path.len() / 2]);
     assert!(
@@ -242,7 +239,7 @@ fn a_film_in_slow_motion_or_with_few_pictures_is_refused_with_the_reason() {
     path.iter_mut().for_each(|point| point.seconds *= 4.0);
     assert_eq!(
         trouble_of(&path),
-        ServoTrouble::AnotherStepInterval { ratio: 4.0 }
+        ServoTrouble::WrongStepInterval { ratio: 4.0 }
     );
     let path = AngleCamera::phone(15.0).path(&Servo::default(), &mut rng);
     let trouble = trouble_of(&path);
