@@ -1,9 +1,9 @@
-// A Vite plugin that puts the addresses of the repository and of the page, from crates/Cargo.toml, into the page.
+// A Vite plugin that fills the addresses of the repository and of the page, from crates/Cargo.toml, into the page.
 import { readFileSync } from 'node:fs';
 
 const CARGO_TOML = new URL('../crates/Cargo.toml', import.meta.url);
 
-/** Fills in the addresses of the repository and of the page; where an address is empty, removes the text around it. */
+/** Fills in the addresses of the repository and of the page; removes the text around an address that is empty. */
 const fillAddresses = (html, cargoToml) =>
   ['repository', 'homepage'].reduce((filled, name) => {
     const [, address] = new RegExp(`^${name} = "(.*?)"`, 'm').exec(cargoToml);

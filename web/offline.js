@@ -1,18 +1,18 @@
-// Builds the page's service worker, with the list of all files of the page.
+// Builds the page's service worker, which contains the list of the page's files.
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 const WORKER_NAME = 'service-worker.js';
-/** The picture that a chat shows beside a link to the page; the page itself does not use it. */
-const PREVIEW = 'preview.png';
+/** The picture that a chat shows beside a link to the page; the page itself does not use the picture. */
+const PREVIEW_NAME = 'preview.png';
 
-/** Writes the service worker of the page in a folder. */
+/** Writes the service worker for the page in `folder` into that folder. */
 export function writeServiceWorker(folder) {
   const paths = readdirSync(folder, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile())
     .map((entry) => join(entry.parentPath ?? entry.path, entry.name).slice(join(folder, '/').length).replaceAll('\\', '/'))
-    .filter((path) => path !== WORKER_NAME && path !== PREVIEW)
+    .filter((path) => path !== WORKER_NAME && path !== PREVIEW_NAME)
     .sort();
   const hashOf = (path) => createHash('sha256').update(readFileSync(join(folder, path))).digest('hex');
   const fileList = paths.map((path) => `  [${JSON.stringify(path)}, '${hashOf(path)}'],`).join('\n');
@@ -22,5 +22,5 @@ export function writeServiceWorker(folder) {
   writeFileSync(join(folder, WORKER_NAME), constants + workerSource);
 }
 
-/** A Vite plugin that writes the service worker after the build of all other files. */
+/** A Vite plugin that writes the service worker after all other files are built. */
 export const offline = () => ({ name: 'offline', apply: 'build', closeBundle: () => writeServiceWorker(new URL('dist', import.meta.url).pathname) });

@@ -1,20 +1,20 @@
-// Writes pictures of the page into a folder: the frames of the README's animation, which is one cycle of a walk; the
-// gait editor of docs/web.md; and the preview that a chat shows beside a link. scripts/page-picture makes the files.
+// Writes pictures of the page into a folder: the frames of the README's animation, which shows one cycle of a walk; the
+// gait editor for docs/web.md; and the preview that a chat shows beside a link. scripts/page-picture runs this script.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
 import { address, closeBrowser, openBrowser, openPage } from './tests/browser.js';
 
 const [, , folder] = process.argv;
-/** Duration of a cycle of `walk`. */
+/** Duration of a cycle of the gait `walk`. */
 const CYCLE_MS = 1000;
-/** Cycles after which all cycles are equal. */
+/** Number of cycles after which all further cycles are equal. */
 const WARM_UP_CYCLES = 3;
 const FRAME_COUNT = 16;
 
 await mkdir(folder, { recursive: true });
 await openBrowser();
-// This script advances the page's clock, so that the frames are evenly spaced and the view follows the robot.
+// This script itself advances the page's clock, so that the frames are evenly spaced and the view follows the robot.
 const page = await openPage({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' }, () => {});
 await page.goto(`${address()}#room=drive`);
 await page.clock.runFor(3000);
@@ -23,14 +23,14 @@ await page.evaluate(() => {
   document.activeElement.blur();
   scrollTo(0, 0);
 });
-// Waits until every gait that moves shows its prediction.
+// Waits until the button of every gait except `stand` shows a prediction.
 await page.waitForFunction(() => [...document.querySelectorAll('#gaits button:not([data-command="stand"]) small')].every((note) => note.textContent !== ''));
 await page.clock.runFor(WARM_UP_CYCLES * CYCLE_MS);
 for (let n = 0; n < FRAME_COUNT; n++) {
   await page.clock.runFor(CYCLE_MS / FRAME_COUNT);
   await page.screenshot({ path: join(folder, `${String(n).padStart(2, '0')}.png`) });
 }
-// A short search, and its result on the screen.
+// The gait editor with the result of a short search.
 await page.setViewportSize({ width: 1240, height: 1300 });
 await page.goto(`${address()}#room=gaits`);
 await page.getByLabel('Rounds of 40 gaits').fill('1');
@@ -39,7 +39,7 @@ await page.waitForFunction(() => document.querySelector('#faster-said').textCont
 await page.getByRole('button', { name: 'Use this gait' }).click();
 await page.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
 await page.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
-// The first screen with the robot in 3D.
+// The preview: the first room, with the robot in 3D.
 await page.setViewportSize({ width: 1600, height: 840 });
 await page.goto(`${address()}#room=start`);
 await page.locator('#solid').click();

@@ -1,5 +1,5 @@
 // Predicts the gaits of the page's robots when the page is built, so that a phone need not do so. Writes
-// NAME.predictions.json beside each NAME.toml in a folder, which also has lizard.wasm.
+// NAME.predictions.json beside each NAME.toml in a folder, which must also contain lizard.wasm.
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
@@ -10,5 +10,5 @@ initSync({ module: readFileSync(join(folder, 'lizard.wasm')) });
 const robot = new Robot();
 for (const name of readdirSync(folder).filter((file) => file.endsWith('.toml'))) {
   const { gaits } = robot.read(readFileSync(join(folder, name), 'utf8'));
-  writeFileSync(join(folder, name.replace(/toml$/, 'predictions.json')), JSON.stringify(gaits.map((_, gait) => robot.predict(gait))));
+  writeFileSync(join(folder, name.replace(/toml$/, 'predictions.json')), JSON.stringify(gaits.map((_, index) => robot.predict(index))));
 }

@@ -1,4 +1,4 @@
-// Takes pictures of every room on a phone and on a desktop, to check a change of the page by eye. Usage:
+// Takes screenshots of every room at the sizes of phones and a desktop, to check a change of the page by eye. Usage:
 // node web/room-pictures.js FOLDER [dark]
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';

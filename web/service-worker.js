@@ -1,8 +1,8 @@
-// Stores all files of one build of the page when it is first opened, so that the page works without a network. The
-// build puts two constants in front of this code: FILES, which has each path with the SHA-256 of its bytes, and BUILD,
-// the SHA-256 of that list.
+// Stores all files of one build of the page when the page is first opened, so that it works without a network. The
+// build puts two constants in front of this code: FILES, the list of all paths with the SHA-256 of their bytes, and
+// BUILD, the SHA-256 of that list.
 
-/** First part of the names of this page's caches; other pages of the same origin have other caches. */
+/** The prefix of the names of this page's caches, which other pages of the same origin do not share. */
 const CACHE_PREFIX = `lizard ${new URL(self.registration.scope).pathname} `;
 const CACHE_NAME = CACHE_PREFIX + BUILD;
 
@@ -13,7 +13,7 @@ async function hashOf(bytes) {
   return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
-/** Returns a file of this build, from an older cache or from the server. Throws if the server has another version. */
+/** Returns a file of this build from an older cache or from the server. Throws if the server has another version. */
 async function loadVerifiedFile(path, hash) {
   for (const name of await caches.keys()) {
     if (!name.startsWith(CACHE_PREFIX)) continue;
@@ -26,7 +26,7 @@ async function loadVerifiedFile(path, hash) {
   return response;
 }
 
-// All files or none: while one is missing, the older build stays in use.
+// Stores all files or none: if one is missing, the older build stays in use.
 self.addEventListener('install', (event) => {
   event.waitUntil(
     (async () => {

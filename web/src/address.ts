@@ -3,10 +3,7 @@
 import { pack } from './link-text';
 import type { Session } from './session';
 
-/**
- * Delay from the last change of the robot to the update of the address, ms: browsers refuse an address that changes too
- * often.
- */
+/** Delay from a change of the robot to the update of the address, ms: browsers limit the rate of updates. */
 const UPDATE_DELAY_MS = 300;
 
 /** Parses the fragment of an address: `room`, and the robot as `file`, its name, or as `robot`, its packed text. */

@@ -17,9 +17,7 @@ export class Helper<Api> {
     });
   }
 
-  /**
-   * Calls a function of the worker. Rejects with the error that the function throws, or if the worker cannot be loaded.
-   */
+  /** Calls a function of the worker. Rejects with its error, or if the worker cannot be loaded. */
   async call<Result>(invoke: (api: Remote<Api>) => Promise<Result>): Promise<Result> {
     if (this.loadError) throw this.loadError;
     let rejectCall: (error: Error) => void = () => {};

@@ -70,7 +70,7 @@ async function start(): Promise<void> {
     onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
       recordView.addFrame(frame, widths, seconds);
-      if (frame.scene) for (const map of maps) map.addPosition(frame.scene);
+      if (frame.scene) for (const map of maps) map.addPose(frame.scene);
       if (widths) scope.setWidths(widths);
     },
     onPulse: (pin, rise, width) => {
@@ -85,7 +85,7 @@ async function start(): Promise<void> {
       log.showReceived(line);
       setup.noteReceived(line);
       measure?.noteReceived(line);
-      if (line.startsWith('# fault')) remote.buzz();
+      if (line.startsWith('# fault')) remote.vibrate();
     },
     confirmUno: () =>
       confirm(
@@ -93,7 +93,7 @@ async function start(): Promise<void> {
           'What is written there would ruin a Nano until a programmer at its pins repairs it. OK: it is a UNO.',
       ),
     onTrouble(cause, message) {
-      if (cause === 'fault' && message !== null) remote.buzz();
+      if (cause === 'fault' && message !== null) remote.vibrate();
       // A board without this firmware can get it at once.
       const remedy = { label: 'Write firmware and robot to it', action: () => flash.write('all') };
       troubles.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);

@@ -156,10 +156,7 @@ export class Dialogue {
     }
   }
 
-  /**
-   * Sends a line every `intervalMs` in addition to all others and without waiting for its answer; null ends the
-   * repetition.
-   */
+  /** Sends a line every `intervalMs`, in addition to all others; its answer is not awaited. Null ends this. */
   keepAlive(line: string | null, intervalMs = 0): void {
     const keepAliveLine = (this.keepAliveLine = line === null ? null : { line });
     if (!keepAliveLine) return;

@@ -11,10 +11,7 @@ import type { OffsetToMiddle } from './tag-tracker';
 const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minAheadShare: 0.7 };
 /** Conditions for a gait by which the robot can return: least distance and largest turn, each per cycle. */
 const RETURN_GAIT = { minForwardMm: 3, maxTurnDeg: 2 };
-/**
- * Distance from the middle of the sheet beyond which the robot first returns if the next walk would leave the sheet,
- * mm.
- */
+/** Distance from the middle, mm, beyond which the robot first returns if the next walk would leave the sheet. */
 const RETURN_DISTANCE_MM = 80;
 /** Outward movement near the edge of the sheet that ends a walk, mm. It must exceed the body's swing within a cycle.
  */

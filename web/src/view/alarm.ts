@@ -1,11 +1,11 @@
-// The alarm for a robot that does not answer: the page then shows an old state, and the robot may walk on.
+// The alarm for a robot that does not answer: the page then shows an outdated state, and the robot may walk on.
 import type { Session } from '../session';
 import { SILENCE_MS } from '../link/dialogue';
 import { element, setText } from './canvas';
 
 export class Alarm {
   private readonly box = element('alarm');
-  /** The time at which the unanswered line was sent, on the page's clock, ms. */
+  /** The time at which the first unanswered line was sent, on the page's clock, ms. */
   private lineSentAt = 0;
 
   constructor(private readonly session: Session) {
@@ -23,7 +23,7 @@ export class Alarm {
     this.update();
   }
 
-  /** Updates the message and the time since the unanswered line. */
+  /** Updates the message and the age of the unanswered line. */
   update(): void {
     if (this.box.hidden) return;
     const message = this.session.state.isStopping.value ? 'No answer: it may walk on. "stop" is sent until it answers.' : 'No answer from the robot.';

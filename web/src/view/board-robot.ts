@@ -1,5 +1,5 @@
-// Warns that the board has another robot than the page, which would draw and predict it wrongly. Searches for the
-// board's robot and offers to show it.
+// A warning that the board has another robot than the page, so that the page draws and predicts it wrongly. The board's
+// robot is searched for and offered.
 import { effect } from '@preact/signals-core';
 
 import { files } from '../files';
@@ -16,14 +16,14 @@ interface KnownRobot {
 }
 
 export class BoardRobot {
-  /** A separate reader, since a reader holds one robot only, and the page's reader must keep its own. */
+  /** An instance only for reading robots: an instance has one robot, and the page's instance must keep its own. */
   private readonly reader = new Robot();
 
   /** `showRobot` loads a robot into the page. */
   constructor(
     private readonly session: Session,
     private readonly troubles: Troubles,
-    private readonly showRobot: (known: KnownRobot) => void,
+    private readonly showRobot: (robot: KnownRobot) => void,
   ) {
     effect(() => void this.update());
   }
@@ -40,8 +40,8 @@ export class BoardRobot {
     this.troubles.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => this.showRobot(knownRobot) });
   }
 
-  /**
-   * Finds the robot with a hash among the robots that the user has put aside and the page's files; null if none has it.
+  /** Finds the robot with this hash among those that the user has put aside and those that come with the page; null if
+   * none has it.
    */
   private async findByHash(hash: string): Promise<KnownRobot | null> {
     const hasHash = (toml: string) => {
@@ -50,8 +50,8 @@ export class BoardRobot {
     };
     const ownRobot = browserStorage.getPutAside().find(({ toml }) => hasHash(toml));
     if (ownRobot) return ownRobot;
-    const names = await files.robots().catch(() => ({ all: [] }));
-    for (const file of names.all) {
+    const { all } = await files.robots().catch(() => ({ all: [] }));
+    for (const file of all) {
       const toml = await files.toml(file).catch(() => '');
       if (hasHash(toml)) return { file, toml };
     }

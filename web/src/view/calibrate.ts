@@ -1,4 +1,4 @@
-// The panel of the servos' calibration, which `cal` reads, the sliders and fields set, and `save` stores.
+// The panel of the servos' calibration: `cal` reads it, the sliders and fields set it, and `save` stores it.
 import { loadBoard } from '../board';
 import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
@@ -8,6 +8,7 @@ import { element } from './canvas';
 import { make } from './make';
 import { isShown } from './rooms';
 
+/** The inputs of a servo. */
 interface Row {
   trim: HTMLInputElement;
   scale: HTMLInputElement;
@@ -20,7 +21,7 @@ export class Calibrate {
   private readonly rowBox = element('calibration');
   private readonly message = element('cal-said');
   private rows: Row[] = [];
-  /** True after a line without an answer: the shown settings may differ from the robot's. */
+  /** True after an unanswered line: the shown settings may differ from the robot's. */
   private mayBeOutdated = false;
 
   constructor(private readonly session: Session) {
@@ -42,15 +43,15 @@ export class Calibrate {
     if (!settings) return;
     this.mayBeOutdated = false;
     if (this.rows.length === 0) this.buildRows();
-    settings.servos.forEach((servo, n) => this.show(n, servo));
+    settings.servos.forEach((servo, n) => this.showServo(n, servo));
   }
 
-  /** Reads the settings again, now that the robot answers, if the shown ones may be wrong. */
+  /** Reads the settings again if the shown ones may be outdated; called when the robot answers. */
   private refresh(): void {
     if (this.mayBeOutdated) void this.read();
   }
 
-  private show(servo: number, { trim, limit, dir, scale }: ServoSettings): void {
+  private showServo(servo: number, { trim, limit, dir, scale }: ServoSettings): void {
     const row = this.rows[servo];
     row.trim.value = String(trim);
     row.trim.dispatchEvent(new Event('shown'));

@@ -1,16 +1,16 @@
-// Canvases at the screen's resolution, which follow the size of their elements, and access to the page's elements.
+// Canvases at the screen's resolution and at the size of their elements, and access to the page's elements.
 
-/** A canvas that is ready for drawing. */
+/** A canvas that is prepared for drawing. */
 export interface Surface {
   context: CanvasRenderingContext2D;
-  /** Width, CSS pixels. */
+  /** Width and height, CSS pixels. */
   width: number;
   height: number;
 }
 
 /**
- * Prepares a canvas for drawing in CSS pixels. Returns null while it is not shown. Clears the canvas, unless it is
- * opaque, which saves blending: then the caller must fill it.
+ * Prepares a canvas for drawing in CSS pixels; returns null while the canvas is hidden. Clears it, unless it is opaque,
+ * which saves blending: the caller must then fill it.
  */
 export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false): Surface | null {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -28,7 +28,7 @@ export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false): Sur
   return { context, width, height };
 }
 
-/** Adds straight lines through points to the path. */
+/** Adds the straight lines between successive points to the path. */
 export function polyline(context: CanvasRenderingContext2D, ...[[x, y], ...others]: [[number, number], ...[number, number][]]): void {
   context.moveTo(x, y);
   for (const point of others) context.lineTo(...point);
@@ -51,13 +51,13 @@ export function element<T extends HTMLElement>(id: string): T {
   return node as T;
 }
 
-/** Shows a message in a box, which is hidden while there is none. */
+/** Shows a message in a box; an empty message hides the box. */
 export function showMessage(box: HTMLElement, text: string): void {
   setText(box, text);
   box.hidden = text === '';
 }
 
-/** Sets the text of an element unless it is there already, so that nothing is laid out or read aloud again. */
+/** Sets the text of an element unless it has this text, so that nothing is laid out or read aloud again. */
 export function setText(box: HTMLElement, text: string): void {
   if (box.textContent !== text) box.textContent = text;
 }

@@ -1,10 +1,10 @@
-// Saves files, and a robot.toml with the values of the page's sliders.
+// Saves files on the user's machine, and robot.toml with the values of the page's sliders.
 import { type Floor, isRefused, type Refused, Robot } from '../robot';
 import { make } from './make';
 
 /**
- * Saves a robot.toml with this floor, mass, feet and leg drive; for null, the text keeps its own values. If the
- * values cannot be written into the text, it is saved unchanged and the reason is returned.
+ * Saves a robot.toml with this floor, mass, feet and leg drive; null keeps the values of the text. If they cannot be
+ * written into the text, saves it unchanged and returns the reason.
  */
 export function downloadRobot(toml: string, floor: Floor | null): Refused | null {
   const edited = floor && Robot.editFloor(toml, floor);
@@ -14,7 +14,7 @@ export function downloadRobot(toml: string, floor: Floor | null): Refused | null
   return refusal;
 }
 
-/** Saves a file. */
+/** Saves a file with this content and MIME type. */
 export function saveFile(name: string, pieces: BlobPart[], type: string): void {
   const link = make('a', { href: URL.createObjectURL(new Blob(pieces, { type })), download: name });
   link.click();

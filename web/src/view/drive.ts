@@ -1,5 +1,5 @@
-// A button for each gait and each routine. A gait's button also shows the predicted displacement per cycle, and the
-// share of the servos' torque-speed line that the gait uses.
+// The buttons of all gaits and routines. A gait's button also shows the predicted displacement per cycle, and the share
+// of the servos' torque-speed line that the gait uses.
 import { effect } from '@preact/signals-core';
 
 import type { Predictor } from '../predictor';
@@ -11,12 +11,12 @@ import { make } from './make';
 
 /** Number of characters that fit on a button of the usual width. */
 const BUTTON_CHARACTERS = 13;
-/** Share of the servos' torque-speed line from which the page warns of little reserve. */
+/** Share of the servos' torque-speed line at and above which the page warns of little reserve. */
 const HIGH_LOAD_SHARE = 0.9;
 /** The longest text of a prediction; a button reserves room for it. */
 const LONGEST_PREDICTION = '-999.9 mm, -99.9°';
 
-/** Formats a displacement as a short text: mm forward, and degrees if it turns; '' for null. */
+/** Formats a displacement as a short text: mm forward, and degrees for a turn; '' for null. */
 export function formatDisplacement(displacement: Displacement | null): string {
   if (!displacement) return '';
   const parts = [
@@ -28,6 +28,7 @@ export function formatDisplacement(displacement: Displacement | null): string {
 
 export class Drive {
   private readonly buttonList = element('gaits');
+  /** The buttons with their parts; `note` shows the prediction, and `loadLabel` the share of the torque-speed line. */
   private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; loadLabel: HTMLElement; moves: boolean }[] = [];
   private readonly message = element('drive-said');
   /** The commands of the buttons in index.html, which every robot has. */
@@ -76,22 +77,22 @@ export class Drive {
   private showPredictions(): void {
     const predictions = this.predictor.predictions.value;
     const pace = this.session.state.pace.value;
-    const isKnown = this.buttons.every(({ command, moves }) => !moves || predictions.has(command));
+    const areAllPredicted = this.buttons.every(({ command, moves }) => !moves || predictions.has(command));
     let [hardestGait, largestShare] = ['', 0];
     for (const { command, note, loadLabel } of this.buttons) {
       const prediction = predictions.get(command) ?? null;
       note.textContent = formatDisplacement(prediction);
       const lines = prediction?.lines;
       const share = lines?.[Math.ceil((pace * lines.length) / 100) - 1];
-      const isTight = share !== undefined && share >= HIGH_LOAD_SHARE;
-      loadLabel.classList.toggle('tight', isTight);
-      loadLabel.textContent = share === undefined ? '' : `${isTight ? '⚠ ' : ''}line ${share.toFixed(2)}`;
-      if (isKnown && share !== undefined && share > largestShare) [hardestGait, largestShare] = [command, share];
+      const isHighLoad = share !== undefined && share >= HIGH_LOAD_SHARE;
+      loadLabel.classList.toggle('tight', isHighLoad);
+      loadLabel.textContent = share === undefined ? '' : `${isHighLoad ? '⚠ ' : ''}line ${share.toFixed(2)}`;
+      if (areAllPredicted && share !== undefined && share > largestShare) [hardestGait, largestShare] = [command, share];
     }
     const note = element('line-note');
     note.classList.toggle('warning', largestShare >= HIGH_LOAD_SHARE);
-    const meaning = largestShare >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largestShare >= HIGH_LOAD_SHARE ? ': little is left' : '';
-    note.textContent = hardestGait === '' ? '' : `${hardestGait} asks most of its servos, ${largestShare.toFixed(2)} of their torque-speed line at ${pace} % of its pace${meaning}.`;
+    const advice = largestShare >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largestShare >= HIGH_LOAD_SHARE ? ': little is left' : '';
+    note.textContent = hardestGait === '' ? '' : `${hardestGait} asks most of its servos, ${largestShare.toFixed(2)} of their torque-speed line at ${pace} % of its pace${advice}.`;
   }
 
   /** Marks the button of the robot's current gait or routine. */

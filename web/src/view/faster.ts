@@ -1,4 +1,4 @@
-// The button "Make it faster": searches for a gait that walks faster than the edited one, and offers it.
+// The button "Make it faster", which searches for a gait that is faster than the edited one, and offers it.
 import { files } from '../files';
 import { type SearchReport, type BestGait, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
@@ -12,12 +12,12 @@ import { formatFigures } from './trial';
 export interface GaitEditor {
   gait(): Bars | null;
   setGait(gait: Bars): void;
-  /** Lets the found gait walk beside the previous one, and writes their displacements into `output`. */
+  /** Lets two robots walk the found gait and the previous one, and shows their displacements in `output`. */
   compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void>;
 }
 
 const BUTTON_LABELS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
-/** The rows of the comparison. */
+/** The labels of the rows of the comparison. */
 const ROW_LABELS = { speed: 'speed', way: 'distance per cycle', turn: 'turn per cycle', least: 'least margin', fastest: 'fastest servo', cycle: 'cycle' } as const;
 
 export class FasterView {
@@ -28,14 +28,15 @@ export class FasterView {
   private readonly resultBox = element('faster-result');
   private readonly settings = { rate: null as number | null, rounds: 5, seed: 1 };
   private search: FasterSearch | null = null;
-  /** The gait that the search has to beat, and its trial. */
+  /** The gait to beat, and its trial. */
   private reference: Bars | null = null;
   private referenceTrial: Trial | null = null;
   private best: BestGait | null = null;
-  /** The gait that the found one replaced. */
+  /** The gait that the found one has replaced in the editor; null while it has replaced none. */
   private replacedGait: Bars | null = null;
   /** The robot.toml for which the search runs or its result is shown; empty for none. */
   private toml = '';
+  /** Number of gaits that the search tries. */
   private gaitCount = 0;
   /** The WebAssembly module with the search, loaded on demand. */
   private module: Promise<WebAssembly.Module> | null = null;
@@ -48,12 +49,12 @@ export class FasterView {
     setUpNumberInput(element('faster-rate'), { min: 10, max: 1000, step: 1 }, (value) => (settings.rate = value));
     setUpNumberInput(element('faster-rounds'), { min: 1, max: 200, step: 1 }, (value) => (settings.rounds = Math.round(value ?? 5)));
     setUpNumberInput(element('faster-seed'), { min: 0, max: 1e9, step: 1 }, (value) => (settings.seed = Math.round(value ?? 1)));
-    this.startButton.addEventListener('click', () => (this.search ? this.search.stop() : this.begin()));
+    this.startButton.addEventListener('click', () => (this.search ? this.search.stop() : this.startSearch()));
     this.takeButton.addEventListener('click', () => this.useFoundGait());
     element('faster-both').addEventListener('click', () => void this.compare());
   }
 
-  /** Ends the search if the robot has changed, since its result would not fit. */
+  /** Ends the search if the robot has changed, since the result would not fit the new robot. */
   endIfRobotChanged(): void {
     if (this.toml === '' || this.session.toml === this.toml) return;
     this.toml = '';
@@ -64,7 +65,7 @@ export class FasterView {
     this.setMessage('The robot has changed, so the search for the previous one has ended.');
   }
 
-  private begin(): void {
+  private startSearch(): void {
     const bars = this.editor.gait();
     if (!bars) return this.setMessage('There is no gait to start from.');
     const { toml, floor, servos } = this.session;
@@ -77,9 +78,9 @@ export class FasterView {
     this.progressBar.hidden = false;
     this.setMessage('Looking for the widest stride that the limits allow…');
     this.module ??= files.tune();
-    // A failed download is tried again next time.
+    // A failed download is repeated next time.
     this.module.catch(() => (this.module = null));
-    this.search = new FasterSearch(this.module, { toml, floor, servos, task: { bars, ...this.settings } }, (answer) => this.handleReport(answer));
+    this.search = new FasterSearch(this.module, { toml, floor, servos, task: { bars, ...this.settings } }, (report) => this.handleReport(report));
   }
 
   private handleReport(report: SearchReport): void {
@@ -115,7 +116,7 @@ export class FasterView {
     this.setMessage(`${stopText}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
   }
 
-  /** Ends the search; the button starts a new one. */
+  /** Resets the view after a search, so that the button starts a new one. */
   private endSearch(): void {
     this.search = null;
     this.progressBar.hidden = true;
@@ -136,7 +137,7 @@ export class FasterView {
     this.resultBox.hidden = false;
   }
 
-  /** Puts the found gait into the editor, or restores the gait that it replaced. */
+  /** Puts the found gait into the editor, or restores the gait that it has replaced. */
   private useFoundGait(): void {
     const currentGait = this.editor.gait();
     if (!currentGait || !this.best) return;
@@ -150,7 +151,7 @@ export class FasterView {
     const { reference, best } = this;
     if (!reference || !best) return;
     const { robot, toml, isReal } = this.session;
-    // This change only put the found gait into the robot, so the result stays.
+    // The comparison only puts the found gait into the robot, so the result stays.
     if (!isReal) this.toml = robot.putGait(toml, best.bars);
     await this.editor.compare(reference, best.bars, element('faster-ways'));
   }

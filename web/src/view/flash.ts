@@ -1,4 +1,4 @@
-// The panel that writes the firmware and the robot to the board through its boot loader.
+// The panel for writing the firmware and the robot to the board through its boot loader.
 import { effect } from '@preact/signals-core';
 
 import { loadBoard } from '../board';
@@ -16,7 +16,7 @@ export class FlashView {
   private readonly question = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
   readonly message = element('flash-said');
-  /** The image of the chosen file until the user confirms or rejects it; null without one. */
+  /** The image of the chosen file until the user confirms or rejects it; null if there is none. */
   private chosenImage: Uint8Array | null = null;
 
   constructor(
@@ -38,9 +38,9 @@ export class FlashView {
     effect(() => this.update());
   }
 
-  /** Shows what can be written over the session's link, and drops a chosen file. */
+  /** Updates the controls and the note for the session's link, and drops a chosen file. */
   private update(): void {
-    const { link, robotSection: section, description } = this.session;
+    const { link, robotSection, description } = this.session;
     const isBusy = this.writer.isBusy.value;
     if (!link) return;
     this.dropChosenImage();
@@ -48,11 +48,11 @@ export class FlashView {
     const radioNote = `Nothing can be written to the ${link.name}: ${NO_WRITING_BY_RADIO}.`;
     const cableNote =
       `Writes to the ${link.name} by its boot loader, verifies, and starts it. The firmware is the same for every robot; what is saved in the board stays. ` +
-      `The robot alone is ${section.length} bytes for firmware ${description.version} that is there already, and takes about a second.`;
+      `The robot alone is ${robotSection.length} bytes for firmware ${description.version} that is there already, and takes about a second.`;
     this.note.textContent = link.kind === 'radio' ? radioNote : cableNote;
   }
 
-  /** Scrolls to the panel and writes the robot alone, firmware and robot, or the image of a file. */
+  /** Opens the panel and writes the robot alone, firmware and robot, or the image of a file. */
   write(content: WriteContent): void {
     reveal(this.note);
     this.message.scrollIntoView({ block: 'nearest' });

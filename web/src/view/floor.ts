@@ -1,11 +1,11 @@
-// The floor that the lizard walks on, with pan and zoom by pointer, wheel, fingers or keys.
+// The view of the floor on which the robot walks, with pan and zoom by pointer, wheel, fingers or keys.
 import type { Frame, Place, Plate } from '../robot';
 import { circle, element, polyline, prepareSurface } from './canvas';
 import { drawLizard } from './lizard';
 import { onPaletteChange, palette } from './palette';
 
 const GRID_SPACING_MM = 50;
-/** Least zoom, CSS pixels per mm: a robot of about 250 mm stays longer than 60 pixels. */
+/** Least zoom, CSS pixels per mm, at which a robot of about 250 mm is still 60 pixels long. */
 const MIN_ZOOM = 0.25;
 /** Greatest zoom, CSS pixels per mm. */
 const MAX_ZOOM = 8;
@@ -16,24 +16,24 @@ const MAX_TRACK_POINTS = 6000;
 /** Least distance between two points of a track. */
 const MIN_POINT_DISTANCE_MM = 0.5;
 
-/** Distance from the robot's start to the second robot's start, to the right. */
+/** Distance from the robot's start to that of the second robot, on its right. */
 const SECOND_ROBOT_OFFSET_MM = 280;
 
-/** Distance from its goal at which the view stops moving: a tenth of a pixel at the greatest zoom. */
+/** Distance from its goal at which the view stops moving: less than a tenth of a pixel at the greatest zoom. */
 const GOAL_TOLERANCE_MM = 0.01;
 
-/** Sideways movement after which a finger drags the floor, in CSS pixels. */
+/** Sideways movement of a finger since its press above which it drags the floor, CSS pixels. */
 const DRAG_THRESHOLD_PX = 12;
 
-/** The label of the scale bar and its position, in CSS pixels. */
+/** The label of the scale bar and its position, CSS pixels. */
 interface Label {
   text: string;
   x: number;
   y: number;
 }
 
-/** The last position of a pressed pointer, in CSS pixels of the canvas. */
-interface Touch {
+/** The position of a pointer on the canvas, CSS pixels. */
+interface PointerPosition {
   x: number;
   y: number;
 }
@@ -41,7 +41,7 @@ interface Touch {
 export class Floor {
   private readonly canvas = element<HTMLCanvasElement>('floor');
   private readonly followButton = element<HTMLButtonElement>('follow');
-  /** The point of the floor in the middle of the canvas, mm. */
+  /** The point of the floor in the middle of the canvas, mm in the frame of the robot's start. */
   private centre = { x: 0, y: 0 };
   /** Zoom, CSS pixels per mm; 0 until the canvas has a size. */
   private zoom = 0;
@@ -49,15 +49,16 @@ export class Floor {
   private isZoomAutomatic = true;
   /** True while the view follows the robot. */
   private isFollowing = true;
-  /** The tracks of the robot and of the second robot, in mm from their own starts. */
+  /** The tracks of the robot and of the second robot, mm, each in the frame of its own start. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** True if the floor is painted in every frame, even behind the robot in 3D: for a film or a picture. */
+  /** True if the floor is painted in every animation frame, even behind the robot in 3D: for a film or a picture. */
   paintsAlways = false;
-  /** The plate and the two robots' frames that were drawn last, for a picture as PNG or SVG. */
+  /** The plate and the two robots' frames that were drawn last; null before the first drawing. */
   private lastDrawn: [Plate, Frame | null, Frame | null] | null = null;
-  /** Everything that the picture on the canvas depends on, except the colours; empty if the floor must be repainted. */
+  /** All inputs of the painted picture except the colours, as text; empty if the floor must be repainted. */
   private paintedState = '';
-  private readonly touches = new Map<number, Touch>();
+  /** The last positions of the pressed pointers, by their ids. */
+  private readonly pressedPointers = new Map<number, PointerPosition>();
   /** True while the pointer drags the floor. */
   private isDragging = false;
 
@@ -73,12 +74,12 @@ export class Floor {
     this.followButton.addEventListener('click', () => this.setFollowing(!this.isFollowing));
     this.canvas.addEventListener('pointerdown', (event) => {
       this.canvas.setPointerCapture(event.pointerId);
-      this.touches.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
+      this.pressedPointers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
     });
     this.canvas.addEventListener('pointermove', (event) => this.handleDrag(event));
     for (const eventName of ['pointerup', 'pointercancel'] as const) {
       this.canvas.addEventListener(eventName, (event) => {
-        this.touches.delete(event.pointerId);
+        this.pressedPointers.delete(event.pointerId);
         this.isDragging = false;
       });
     }
@@ -93,10 +94,10 @@ export class Floor {
       { passive: false },
     );
     this.canvas.addEventListener('keydown', (event) => this.handleKey(event));
-    const forgetPainted = () => (this.paintedState = '');
-    onPaletteChange(forgetPainted);
-    // A browser that is short of memory empties canvases.
-    this.canvas.addEventListener('contextrestored', forgetPainted);
+    const invalidate = () => (this.paintedState = '');
+    onPaletteChange(invalidate);
+    // A browser that runs short of memory may clear canvases.
+    this.canvas.addEventListener('contextrestored', invalidate);
   }
 
   /** Clears the tracks, and moves the view to the start. */
@@ -105,7 +106,7 @@ export class Floor {
     this.centre = { x: 0, y: 0 };
   }
 
-  /** Adds a place to the track of the robot or, if `isSecond`, of the second robot. */
+  /** Adds a place to the track of the robot or, if `isSecond`, to that of the second robot. */
   addToTrack({ x, y }: Place, isSecond = false): void {
     const track = this.tracks[isSecond ? 1 : 0] ?? [];
     const lastPoint = track[track.length - 1];
@@ -115,8 +116,8 @@ export class Floor {
   }
 
   /**
-   * Draws the floor and the robots, unless the canvas shows them already: painting every frame takes half a core of a
-   * slow machine.
+   * Draws the floor and the robots, unless the canvas shows them already: painting in every animation frame takes half
+   * a core of a slow machine.
    */
   draw(plate: Plate, frame: Frame | null, secondFrame: Frame | null): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -124,15 +125,15 @@ export class Floor {
     this.lastDrawn = [plate, frame, secondFrame];
     if (this.isZoomAutomatic) this.zoom = Math.min(width / (MIN_VIEW_MM + (secondFrame ? SECOND_ROBOT_OFFSET_MM : 0)), height / MIN_VIEW_MM);
     if (this.isFollowing && frame) this.moveViewTowards(frame.place, secondFrame && secondFrame.place);
-    // Tests read the scale of the picture.
+    // Tests read the zoom.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
     const state = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
     if (state === this.paintedState && !this.paintsAlways) return;
-    const area = prepareSurface(this.canvas, true);
-    if (!area) return;
-    const { context } = area;
+    const surface = prepareSurface(this.canvas, true);
+    if (!surface) return;
+    const { context } = surface;
     const label = this.paint(context, width, height);
     context.fillStyle = palette().ink;
     context.font = '12px system-ui, sans-serif';
@@ -141,8 +142,8 @@ export class Floor {
   }
 
   /**
-   * Moves the view towards the robot, or towards the middle between two robots; the movement is smoothed, so that the
-   * gait does not shake the view.
+   * Moves the view towards the robot, or towards the midpoint of two robots. The movement is smoothed, so that the gait
+   * does not shake the view.
    */
   private moveViewTowards(robotPlace: Place, secondPlace: Place | null): void {
     const goal = secondPlace ? { x: (robotPlace.x + secondPlace.x + SECOND_ROBOT_OFFSET_MM) / 2, y: (robotPlace.y + secondPlace.y) / 2 } : robotPlace;
@@ -151,17 +152,17 @@ export class Floor {
     this.centre = { x: this.centre.x + x * share, y: this.centre.y + y * share };
   }
 
-  /** Lets the view follow both robots, and fits the zoom to them. */
+  /** Makes the view follow both robots, and fits the zoom to them. */
   fitTwoRobots(): void {
     this.isZoomAutomatic = true;
     this.setFollowing(true);
   }
 
   /**
-   * Draws the last picture with another context in CSS pixels, for SVG. Returns the label of the scale bar, which the
-   * caller adds.
+   * Draws the last picture with another context, in CSS pixels, for SVG. Returns the label of the scale bar, which the
+   * caller must add.
    */
-  redraw(context: CanvasRenderingContext2D): Label {
+  drawWith(context: CanvasRenderingContext2D): Label {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     return this.paint(context, width, height);
   }
@@ -259,20 +260,20 @@ export class Floor {
   }
 
   private handleDrag(event: PointerEvent): void {
-    const previous = this.touches.get(event.pointerId);
+    const previous = this.pressedPointers.get(event.pointerId);
     if (!previous) return;
     const current = { x: event.offsetX, y: event.offsetY };
-    const otherTouch = [...this.touches].find(([id]) => id !== event.pointerId)?.[1];
-    if (otherTouch) {
-      const distanceToOther = (a: Touch) => Math.hypot(a.x - otherTouch.x, a.y - otherTouch.y);
-      this.zoomBy(distanceToOther(current) / Math.max(1, distanceToOther(previous)), (current.x + otherTouch.x) / 2, (current.y + otherTouch.y) / 2);
+    const otherPointer = [...this.pressedPointers].find(([id]) => id !== event.pointerId)?.[1];
+    if (otherPointer) {
+      const distanceToOther = ({ x, y }: PointerPosition) => Math.hypot(x - otherPointer.x, y - otherPointer.y);
+      this.zoomBy(distanceToOther(current) / Math.max(1, distanceToOther(previous)), (current.x + otherPointer.x) / 2, (current.y + otherPointer.y) / 2);
     } else {
       // A finger that scrolls the page moves a little before the browser takes over; that is not a drag of the floor.
       this.isDragging ||= event.pointerType !== 'touch' || Math.abs(current.x - previous.x) > DRAG_THRESHOLD_PX;
       if (!this.isDragging) return;
       this.pan(current.x - previous.x, current.y - previous.y);
     }
-    this.touches.set(event.pointerId, current);
+    this.pressedPointers.set(event.pointerId, current);
   }
 
   private handleKey(event: KeyboardEvent): void {

@@ -1,4 +1,4 @@
-// The gait editor: a circle stands for the cycle, and a bar on it for the stance of each leg.
+// The gait editor. A circle stands for the cycle, and the bars on it stand for the stances of the legs.
 import { browserStorage } from '../browser-storage';
 import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
@@ -11,16 +11,16 @@ import { TrialView } from './trial';
 import type { Writer } from './writer';
 
 const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
-/** For each leg, the index of the leg on the other side. */
+/** The index of the opposite leg of each leg. */
 const OPPOSITE = [1, 0, 3, 2] as const;
-/** Radius of each leg's ring, in units of the picture. */
+/** Radius of each leg's ring, in units of the SVG. */
 const RING_RADII = [104, 82, 60, 38] as const;
-/** Width of a bar, in units of the picture. */
+/** Width of a bar, in units of the SVG. */
 const BAR_WIDTH = 16;
-/** Length of a leg's bar in a gait of the kind `held`, as a share of the cycle. */
+/** Length of a leg's bar in a gait that is held, as a share of the cycle. */
 const HELD_SHARE = 0.25;
 
-/** A number of a gait that has an input. */
+/** The key of a gait's number that has an input. */
 type GaitNumber = 'period' | 'duty' | 'amplitude';
 
 /** Ranges of the gait's numbers, as in robot.toml. */
@@ -34,7 +34,7 @@ const LEG_NUMBER_RANGES = { start: { min: 0, max: 1, step: 0.005 }, gain: { min:
 
 /** Rounds a value to a multiple of `step`. */
 const roundTo = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
-/** Wraps a phase to the range from 0 to 1. */
+/** Wraps a phase to the range from 0 to below 1. */
 const wrapPhase = (phase: number) => ((phase % 1) + 1) % 1;
 
 export class GaitsView {
@@ -48,7 +48,7 @@ export class GaitsView {
   private readonly handles: SVGCircleElement[] = [];
   private readonly trial: TrialView;
   private readonly faster: FasterView;
-  /** The edited gait; null if none was edited yet. */
+  /** The edited gait; null if there is none yet. */
   private gait: Bars | null = browserStorage.getGait();
 
   constructor(
@@ -82,12 +82,12 @@ export class GaitsView {
   private fillTemplateList({ gaits }: Description): void {
     const chosen = this.templateList.value;
     const { robot } = this.session;
-    const barGaits = gaits.flatMap(({ name }, number) => (robot.bars(number) ? [{ name, number }] : []));
-    this.templateList.replaceChildren(...barGaits.map(({ name, number }) => new Option(name, String(number))));
-    if (barGaits.some(({ number }) => String(number) === chosen)) this.templateList.value = chosen;
+    const barGaits = gaits.flatMap(({ name }, index) => (robot.bars(index) ? [{ name, index }] : []));
+    this.templateList.replaceChildren(...barGaits.map(({ name, index }) => new Option(name, String(index))));
+    if (barGaits.some(({ index }) => String(index) === chosen)) this.templateList.value = chosen;
   }
 
-  /** Starts to edit a copy of the chosen gait of the robot. */
+  /** Starts editing a copy of the robot's gait that is chosen as template. */
   private editTemplate(): void {
     const bars = this.templateList.value === '' ? null : this.session.robot.bars(Number(this.templateList.value));
     if (!bars) return this.trial.setMessage('This robot has no gait of four bars to start from.');
@@ -119,14 +119,14 @@ export class GaitsView {
     this.changeGait({ start: swapSides(start), gain: swapSides(gain) });
   }
 
-  /** Makes a leg's bar, the bar's handle and the leg's two number inputs. */
+  /** Adds a leg's bar, the bar's handle and the leg's two number inputs. */
   private addLeg(leg: number): void {
     const bar = this.circle.appendChild(makeSvg('path', { class: `bar a${leg + 1}` }));
     const handle = this.circle.appendChild(makeSvg('circle', { class: `end a${leg + 1}`, r: 6 }));
     this.bars.push(bar);
     this.handles.push(handle);
-    this.addDragHandler(bar, (cycles, firstGait) => this.setLegValue('start', leg, roundTo(wrapPhase((firstGait.start[leg] ?? 0) + cycles), 0.005)));
-    this.addDragHandler(handle, (cycles, firstGait) => this.changeGait({ duty: roundTo(Math.min(0.95, Math.max(0.05, firstGait.duty + cycles)), 0.005) }));
+    this.addDragHandler(bar, (cycles, startGait) => this.setLegValue('start', leg, roundTo(wrapPhase((startGait.start[leg] ?? 0) + cycles), 0.005)));
+    this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundTo(Math.min(0.95, Math.max(0.05, startGait.duty + cycles)), 0.005) }));
     const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
     for (const [key, label, list] of [['start', 'starts at', this.startInputs], ['gain', 'share', this.gainInputs]] as const) {
       const input = make('input', { ariaLabel: `${LEGS[leg]} ${label}` });
@@ -136,28 +136,28 @@ export class GaitsView {
     }
   }
 
-  /** Calls `onDrag` during a drag of the mark, with the angle of the drag in cycles and the gait at its beginning. */
-  private addDragHandler(mark: SVGElement, onDrag: (cycles: number, firstGait: Bars) => void): void {
+  /** Calls `onDrag` during a drag of `mark`, with the angle of the drag in cycles and the gait at the drag's start. */
+  private addDragHandler(mark: SVGElement, onDrag: (cycles: number, startGait: Bars) => void): void {
     let lastPhase = 0;
     let draggedCycles = 0;
-    let firstGait: Bars | null = null;
+    let startGait: Bars | null = null;
     const phaseOf = ({ clientX, clientY }: PointerEvent) => {
       const { left, top, width, height } = this.circle.getBoundingClientRect();
       return Math.atan2(clientX - left - width / 2, top + height / 2 - clientY) / (2 * Math.PI);
     };
     mark.addEventListener('pointerdown', (event) => {
       mark.setPointerCapture(event.pointerId);
-      [lastPhase, draggedCycles, firstGait] = [phaseOf(event), 0, this.gait];
+      [lastPhase, draggedCycles, startGait] = [phaseOf(event), 0, this.gait];
     });
     mark.addEventListener('pointermove', (event) => {
-      if (!firstGait || !mark.hasPointerCapture(event.pointerId)) return;
+      if (!startGait || !mark.hasPointerCapture(event.pointerId)) return;
       const currentPhase = phaseOf(event);
-      // Of the two directions around the circle, the pointer has taken the shorter one.
+      // Between two events the pointer moves less than half the circle.
       draggedCycles += wrapPhase(currentPhase - lastPhase + 0.5) - 0.5;
       lastPhase = currentPhase;
-      onDrag(draggedCycles, firstGait);
+      onDrag(draggedCycles, startGait);
     });
-    for (const eventName of ['pointerup', 'pointercancel']) mark.addEventListener(eventName, () => (firstGait = null));
+    for (const eventName of ['pointerup', 'pointercancel']) mark.addEventListener(eventName, () => (startGait = null));
   }
 
   private showGait(): void {
@@ -177,7 +177,7 @@ export class GaitsView {
         put(gainInput, gait.gain[leg] ?? 1);
       }
       this.bars[leg]?.setAttribute('d', ringSectorPath(radius, start, share));
-      // A negative gain: the foot pushes the robot backward.
+      // A negative gain makes the foot push the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
       const [cx, cy] = ringPoint(radius, start + share);
       setAttributes(this.handles[leg], { cx, cy, display: gait.held ? 'none' : 'inline' });
@@ -191,10 +191,10 @@ function ringPoint(radius: number, phase: number): [number, number] {
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];
 }
 
-/** Returns the SVG path of a bar: the sector of a ring that begins at a phase and covers a share of the cycle. */
+/** Returns the SVG path of a bar: the sector of a ring that starts at the phase `start` and covers `share` cycles. */
 function ringSectorPath(radius: number, start: number, share: number): string {
-  const half = BAR_WIDTH / 2;
-  const [inner, outer] = [radius - half, radius + half];
+  const halfWidth = BAR_WIDTH / 2;
+  const [inner, outer] = [radius - halfWidth, radius + halfWidth];
   const largeFlag = share > 0.5 ? 1 : 0;
   const [a, b] = [ringPoint(outer, start), ringPoint(outer, start + share)];
   const [c, d] = [ringPoint(inner, start + share), ringPoint(inner, start)];

@@ -1,4 +1,4 @@
-// The panel of the robot's status, which is requested twice a second while the page is visible.
+// The panel of the robot's status, which is requested twice per second while the page is visible.
 import type { Status } from '../robot';
 import type { Session } from '../session';
 import { element, setText } from './canvas';
@@ -8,8 +8,8 @@ import type { Writer } from './writer';
 
 const REQUEST_PERIOD_MS = 500;
 
-/** The text of each value of the panel. */
-const VALUE_TEXTS: Record<string, (status: Status) => string> = {
+/** The text of each value of the panel, by the value's label. */
+const TEXT_BY_LABEL: Record<string, (status: Status) => string> = {
   fault: ({ fault }) => fault ?? 'none',
   guard: ({ isHeld }) => (isHeld ? 'held' : 'clear'),
   margin: ({ margin }) => margin?.toFixed(3) ?? '–',
@@ -22,9 +22,9 @@ const VALUE_TEXTS: Record<string, (status: Status) => string> = {
 
 export class Health {
   private readonly panel = element<HTMLDetailsElement>('power');
-  private readonly values = Object.entries(VALUE_TEXTS).map(([name, textOf]) => ({ name, textOf, box: make('dd', {}, '–') }));
-  /** True from a request until its answer. */
-  private isAsking = false;
+  private readonly values = Object.entries(TEXT_BY_LABEL).map(([name, textOf]) => ({ name, textOf, box: make('dd', {}, '–') }));
+  /** True while a request has no answer. */
+  private isPending = false;
 
   constructor(
     private readonly session: Session,
@@ -35,10 +35,10 @@ export class Health {
   }
 
   private async requestStatus(): Promise<void> {
-    if (this.isAsking || this.writer.isBusy.value || document.hidden || !this.session.mayAsk) return;
-    this.isAsking = true;
+    if (this.isPending || this.writer.isBusy.value || document.hidden || !this.session.mayAsk) return;
+    this.isPending = true;
     const status = await this.session.status();
-    this.isAsking = false;
+    this.isPending = false;
     if (status && isShown(this.panel)) for (const { box, textOf } of this.values) setText(box, textOf(status));
   }
 }

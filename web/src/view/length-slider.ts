@@ -1,10 +1,9 @@
-// A slider for one length. Its range is the values with which the robot walks; marks show the values whose parts can be
-// printed.
+// The slider of one length. Its range has the values with which the robot walks; marks show those with printable parts.
 import type { Edits, Length } from '../robot';
 import { element } from './canvas';
 import { editsWithTwin } from './tried-lengths';
 
-/** Called with the slider's lengths while it is dragged; `isLast` is true at the end of the drag. */
+/** Called with the edits of lengths while the slider is dragged; `isLast` is true at the end of the drag. */
 export type TryOut = (edits: Edits, isLast: boolean) => void;
 
 export class LengthSlider {
@@ -14,12 +13,12 @@ export class LengthSlider {
   private readonly printableText = element('length-printed');
   private readonly printableMarks = element('length-marks');
   private lengths: Length[] = [];
-  /** True once the user has chosen a length; before that, no time is spent on finding which values can be printed. */
+  /** True once the user has chosen a length; the printable values are searched for only then. */
   isChosen = false;
 
   /**
-   * `onChoice` is called when the user chooses another length, or switches the symmetry of left and right; `chosenKey`
-   * is the length that is chosen at first.
+   * `onChoice` is called when the user chooses another length, or switches the symmetry of left and right. `chosenKey`
+   * is the key of the initially chosen length.
    */
   constructor(
     tryOut: TryOut,
@@ -69,13 +68,13 @@ export class LengthSlider {
     if (chosenLength) this.showValue(chosenLength.value);
   }
 
-  /** Sets the slider's range: the least and the greatest value with which the robot walks. */
-  setRange([smallest, largest]: [number, number]): void {
-    Object.assign(this.slider, { min: String(smallest), max: String(largest) });
+  /** Sets the slider's range from the least to the greatest value with which the robot walks. */
+  setRange([min, max]: [number, number]): void {
+    Object.assign(this.slider, { min: String(min), max: String(max) });
     if (this.chosenLength) this.showValue(this.chosenLength.value);
   }
 
-  /** Marks the range of values that can be printed, null while it is unknown, and shows a message. */
+  /** Marks the range of printable values, null while it is unknown, and shows a message. */
   markPrintable(range: [number, number] | null, message: string): void {
     this.printableText.textContent = message;
     this.printableMarks.hidden = range === null;

@@ -1,4 +1,4 @@
-// The robot's lengths as number inputs: each change makes a new robot or is refused.
+// The number inputs of the robot's lengths; each change makes a new robot or is refused.
 import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { element, showMessage } from './canvas';
@@ -12,7 +12,7 @@ export class Lengths {
   private readonly refusalText = element('lengths-refusal');
   private inputs = new Map<string, HTMLInputElement>();
 
-  /** `offerValidLengths` searches for valid lengths in place of refused ones, and offers them. */
+  /** `offerValidLengths` searches for valid lengths instead of refused ones, and offers them. */
   constructor(
     private readonly session: Session,
     private readonly offerValidLengths: (edits: Edits) => void,

@@ -1,4 +1,4 @@
-// Draws the robot from above, in mm of the chassis frame: x to the right, y forward.
+// The drawing of the robot from above, in mm of the chassis frame: x to the right, y forward.
 import type { Plate, Scene, Point } from '../robot';
 import { circle, polyline } from './canvas';
 import { palette, servoColour } from './palette';
@@ -6,8 +6,8 @@ import { palette, servoColour } from './palette';
 const FOOT_RADIUS_MM = 6;
 /** Width of the plate's drawn edge. */
 const RIM_WIDTH_MM = 0.6;
-/** Slide in one frame beyond which a foot counts as slipping. */
-const SLIP_LIMIT_MM = 0.3;
+/** Slide in one frame above which a foot counts as slipping. */
+const SLIP_THRESHOLD_MM = 0.3;
 
 type Context = CanvasRenderingContext2D;
 
@@ -36,7 +36,7 @@ const SPRING_TURNS = 5;
 /** Half of a drawn spring's width. */
 const SPRING_HALF_WIDTH_MM = 2.4;
 
-/** Draws a spring between two hooks. */
+/** Draws a coil spring between two hooks. */
 function drawSpring(context: Context, [x1, y1]: Point, [x2, y2]: Point): void {
   const length = Math.hypot(x2 - x1, y2 - y1);
   if (length < 1) return;
@@ -54,7 +54,7 @@ function drawSpring(context: Context, [x1, y1]: Point, [x2, y2]: Point): void {
   context.stroke();
 }
 
-/** Draws the outline of a lizard from the head's end point to the tail's. */
+/** Draws the outline of a lizard from the head's point to the tail's point. */
 function drawSkin(context: Context, scene: Scene): void {
   const [[hx, hy], [tx, ty]] = scene.points;
   const backY = Math.max(...scene.shafts.map(([, y]) => y));
@@ -79,13 +79,13 @@ function drawSkin(context: Context, scene: Scene): void {
 
 const SERVOS = [0, 1, 2, 3];
 
-/** Draws a leg's bodies beside and below the plate: foot, leaf spring and coupler. */
-function drawFoot(context: Context, scene: Scene, servo: number, slide: number): void {
+/** Draws a leg's bodies beside and below the plate: foot, leaf spring and coupler. `slideMm` is the foot's slide. */
+function drawFoot(context: Context, scene: Scene, servo: number, slideMm: number): void {
   const colours = palette();
   const { joints, foot } = scene.legs[servo];
   drawBar(context, joints[1], foot, colours.steel, 2.2);
-  // A foot that holds is filled; one that slips is a ring.
-  drawDisc(context, foot, FOOT_RADIUS_MM, slide > SLIP_LIMIT_MM ? colours.card : colours.ink);
+  // A foot that sticks is filled; one that slips is a ring.
+  drawDisc(context, foot, FOOT_RADIUS_MM, slideMm > SLIP_THRESHOLD_MM ? colours.card : colours.ink);
   context.strokeStyle = colours.ink;
   context.lineWidth = 2;
   context.stroke();
@@ -158,7 +158,7 @@ function drawFiveBar(context: Context, scene: Scene, end: 0 | 1): void {
   drawDisc(context, point, 3.2, '#f0e442', '#222222');
 }
 
-/** Draws a pose, the lowest bodies first; `slides` are the distances that the feet slid in this frame, mm. */
+/** Draws the robot, the lowest bodies first; `slides` are the distances that the feet have slid in this frame, mm. */
 export function drawLizard(context: Context, plate: Plate, scene: Scene, slides: readonly number[]): void {
   drawSkin(context, scene);
   for (const servo of SERVOS) drawFoot(context, scene, servo, slides[servo] ?? 0);

@@ -1,4 +1,4 @@
-// The console: the lines that were sent and received, and an input for a line to send.
+// The console: the sent and received lines, and an input for a line to send.
 import { element } from './canvas';
 import { make } from './make';
 
@@ -10,7 +10,7 @@ export class Log {
   private readonly lineInput = element<HTMLInputElement>('typed');
   /** The lines that the user has entered, the latest at the end. */
   private readonly history: string[] = [];
-  /** Index of the line of the history in the input; the history's length if the line is new. */
+  /** Index in the history of the line in the input; the history's length for a new line. */
   private historyIndex = 0;
 
   constructor(onLine: (line: string) => void) {
@@ -44,7 +44,7 @@ export class Log {
 
   private add(text: string, className: string): void {
     const { box } = this;
-    // A user who has scrolled up to read older lines is not disturbed.
+    // A user who has scrolled up to read older lines must not be disturbed.
     const isAtEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
     box.append(make('div', { className }, text));
     while (box.childElementCount > MAX_LINES) box.firstElementChild?.remove();

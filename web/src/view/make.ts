@@ -1,20 +1,20 @@
-// Makes elements: paragraphs, buttons, number inputs, lists, tables, shapes of drawings.
+// Makes elements of the page: paragraphs, buttons, number inputs, lists, tables, SVG.
 
 type Child = Node | string;
 
-/** Makes an element with its properties and children. */
+/** Makes an HTML element with these properties and children. */
 export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: Partial<HTMLElementTagNameMap[K]>, ...children: Child[]): HTMLElementTagNameMap[K] {
   const node = Object.assign(document.createElement(tag), properties);
   node.append(...children);
   return node;
 }
 
-/** Sets attributes of an element; numbers are rounded to hundredths. */
+/** Sets attributes of an element, if there is one; numbers are rounded to hundredths. */
 export function setAttributes(node: Element | undefined, attributes: Record<string, string | number>): void {
   for (const [name, value] of Object.entries(attributes)) node?.setAttribute(name, typeof value === 'number' ? String(Number(value.toFixed(2))) : value);
 }
 
-/** Makes an SVG element with its attributes and children. */
+/** Makes an SVG element with these attributes and children. */
 export function makeSvg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Child[]): SVGElementTagNameMap[K] {
   const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
   setAttributes(node, attributes);
@@ -33,26 +33,26 @@ export const row = (...children: Child[]): HTMLElement => make('p', { className:
 /** Makes a bulleted list. */
 export const list = (...items: Child[]): HTMLElement => make('ul', {}, ...items.map((item) => make('li', {}, item)));
 
-/** Makes a button that calls `action`; `isMain` marks the action that the user is expected to take. */
+/** Makes a button that calls `action`; `isMain` marks the button that the user is expected to press. */
 export function button(label: string, action: () => void, isMain = false): HTMLButtonElement {
   return make('button', { type: 'button', className: isMain ? 'main' : '', onclick: action }, label);
 }
 
-/** Makes a labelled number input; `action` is called with each number that the user enters. */
-export function numberBox(label: string, value: number | null, step: string, action: (value: number) => void): HTMLElement {
+/** Makes a labelled number input; `onNumber` is called with each number that the user enters. */
+export function numberBox(label: string, value: number | null, step: string, onNumber: (value: number) => void): HTMLElement {
   const box = make('input', { type: 'number', step, value: String(value ?? '') });
-  box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && action(box.valueAsNumber));
+  box.addEventListener('change', () => Number.isFinite(box.valueAsNumber) && onNumber(box.valueAsNumber));
   return make('label', { className: 'number' }, label, ' ', box);
 }
 
 /** Makes a row of a table; its first cell is the row's heading. */
-export function tableRow([head = '', ...cells]: string[]): HTMLElement {
-  return make('tr', {}, make('th', { scope: 'row' }, head), ...cells.map((text) => make('td', {}, text)));
+export function tableRow([heading = '', ...cells]: string[]): HTMLElement {
+  return make('tr', {}, make('th', { scope: 'row' }, heading), ...cells.map((text) => make('td', {}, text)));
 }
 
 /** Makes a table with a header row and a caption for screen readers. */
-export function table(caption: string, head: string[], rows: string[][]): HTMLElement {
-  const headCells = head.map((text) => make('th', { scope: 'col' }, text));
+export function table(caption: string, headings: string[], rows: string[][]): HTMLElement {
+  const headingCells = headings.map((text) => make('th', { scope: 'col' }, text));
   const captionElement = make('caption', { className: 'hidden' }, caption);
-  return make('table', { className: 'settings' }, captionElement, make('thead', {}, make('tr', {}, ...headCells)), make('tbody', {}, ...rows.map(tableRow)));
+  return make('table', { className: 'settings' }, captionElement, make('thead', {}, make('tr', {}, ...headingCells)), make('tbody', {}, ...rows.map(tableRow)));
 }

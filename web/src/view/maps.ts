@@ -1,14 +1,14 @@
 // The map of the singularities of the head's or the tail's five-bar over the angles of its left and right servo, with
-// the robot's current position.
+// the robot's current pose.
 import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
 import { element, prepareSurface } from './canvas';
 import { onPaletteChange, palette } from './palette';
 
-/** Number of frames whose positions are drawn as a trail. */
+/** Number of frames whose poses are drawn as a trail. */
 const TRAIL_LENGTH = 100;
 
-/** The map of one end, head or tail. */
+/** The view of the map of one end, head or tail. */
 export class MapView {
   private readonly canvas: HTMLCanvasElement;
   private map: SingularityMap | null = null;
@@ -30,17 +30,17 @@ export class MapView {
     });
   }
 
-  /** Adds the current position to the trail. */
-  addPosition(scene: Scene): void {
+  /** Adds the current pose to the trail. */
+  addPose(scene: Scene): void {
     this.trail.push(scene.map[this.endIndex]);
     if (this.trail.length > TRAIL_LENGTH) this.trail.shift();
   }
 
   draw(): void {
     const { map } = this;
-    const area = prepareSurface(this.canvas);
-    if (!area || !map) return;
-    const { context, width, height } = area;
+    const surface = prepareSurface(this.canvas);
+    if (!surface || !map) return;
+    const { context, width, height } = surface;
     if (this.background?.width !== this.canvas.width) this.background = this.drawBackground(map);
     context.drawImage(this.background, 0, 0, width, height);
     const scale = width / (map.to - map.from);
@@ -87,10 +87,10 @@ export class MapView {
     const dotRadius = Math.max(1.2, size / 160);
     for (const { kind, points } of map.curves) {
       context.fillStyle = kind === 'couplers' ? colours.alarm : colours.steel;
-      const dotScale = kind === 'couplers' ? 2.5 : 1;
+      const radiusFactor = kind === 'couplers' ? 2.5 : 1;
       for (const [left, right] of points) {
         context.beginPath();
-        context.arc((left - map.from) * scale, size - (right - map.from) * scale, dotRadius * dotScale, 0, 2 * Math.PI);
+        context.arc((left - map.from) * scale, size - (right - map.from) * scale, dotRadius * radiusFactor, 0, 2 * Math.PI);
         context.fill();
       }
     }

@@ -1,4 +1,4 @@
-// The panel of margins: the distance of the pose from each singularity.
+// The panel of the margins, the distances of the pose from the singularities.
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
 import { element, setText } from './canvas';
@@ -13,7 +13,7 @@ export class MarginsView {
     session.followRobot((description) => this.showRobot(description));
   }
 
-  /** Makes a bar with a mark at the limit for each margin of another robot. */
+  /** Shows another robot: makes a bar for each of its margins, with a mark at the limit. */
   private showRobot({ margins }: Description): void {
     const list = element('margins');
     list.replaceChildren();
@@ -26,7 +26,7 @@ export class MarginsView {
     });
   }
 
-  /** Draws the bars for a pose, null for an unknown one. */
+  /** Draws the bars for a pose; null if the pose is unknown. */
   draw(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.bars.forEach(({ row, fill, limit }, index) => {
@@ -36,7 +36,7 @@ export class MarginsView {
     });
   }
 
-  /** Updates the numbers; called less often than `draw`, since the browser lays out the page again for them. */
+  /** Updates the numbers; called less often than `draw`, since each change of a text costs a layout of the page. */
   updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.bars.forEach(({ value }, index) => {

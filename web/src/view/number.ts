@@ -1,15 +1,14 @@
 // A number input that marks values out of range and ignores them.
 
-/** The range of valid numbers, and the distance between two values of the input's arrows. */
+/** The range of valid numbers, and the step of the input's arrows. */
 export interface Range {
   min: number;
   max: number;
   step: number;
 }
 
-/**
- * Sets an input's range. `onNumber` is called with each valid number that is typed, and with null when the input is
- * emptied. Leaving the input with an invalid number restores the last valid one.
+/** Sets an input's range. `onNumber` is called with each valid number that is typed, and with null when the input is
+ * emptied. When the user leaves the input with an invalid number, the last valid one is restored.
  */
 export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Range, onNumber: (value: number | null) => void): void {
   Object.assign(input, { type: 'number', min: String(min), max: String(max), step: String(step), title: `from ${min} to ${max}` });
@@ -28,7 +27,7 @@ export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Ra
   });
 }
 
-/** Sets the number of an input; its text stays while the user is typing there. */
+/** Sets the number of an input; the text stays while the user is typing in the input. */
 export function putNumber(input: HTMLInputElement, value: number): void {
   input.defaultValue = String(value);
   if (document.activeElement === input) return;

@@ -1,9 +1,9 @@
-// The user's own robots: opening a link or another robot puts the changed one aside, and never erases it.
+// The user's own robots: when a link or another robot is opened, the changed robot is put aside and never lost.
 import { browserStorage, type SavedChanges } from '../browser-storage';
 import type { Session } from '../session';
 import type { Troubles } from './troubles';
 
-/** Returns the robot's name in the text of a robot.toml. */
+/** Returns the name of the robot in a robot.toml. */
 const nameIn = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
 
 export class OwnRobot {
@@ -18,7 +18,7 @@ export class OwnRobot {
   }
 
   /**
-   * Puts the user's previous robot aside and offers to restore it, if it had been changed and another robot has
+   * Puts the user's previous robot aside and offers to restore it, if the user had changed it and another robot has
    * replaced it.
    */
   putAside(previous: SavedChanges | null): void {
@@ -27,7 +27,7 @@ export class OwnRobot {
     this.troubles.setMessage('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
   }
 
-  /** Restores the robot with an index among those that were put aside, and puts the current one aside. */
+  /** Restores the robot with this index among those that were put aside, and puts the current robot aside. */
   async restore(index = 0): Promise<void> {
     const robotsAside = browserStorage.getPutAside();
     const ownRobot = robotsAside[index];
@@ -36,7 +36,7 @@ export class OwnRobot {
     const previous = browserStorage.getChanges();
     await this.loadFile(ownRobot.file);
     const session = this.session;
-    // If the robot's file has changed since then, the stored text itself is loaded.
+    // If the robot's file has changed since then, only the stored text is loaded.
     if (!(await session.restoreSaved(ownRobot)) && (await session.change(ownRobot.toml))) return;
     this.storeAside(robotsAside.filter((_, n) => n !== index));
     this.putAside(previous);

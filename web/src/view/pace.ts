@@ -1,4 +1,4 @@
-// The slider for the pace of all gaits; it also shows the pace that the robot reports.
+// The slider of the pace of all gaits, which also shows the pace that the robot reports.
 import type { Session } from '../session';
 import { WORDS } from '../words';
 import { element } from './canvas';
@@ -6,7 +6,7 @@ import { element } from './canvas';
 export class Pace {
   private readonly slider = element<HTMLInputElement>('speed');
   private readonly valueText = element('speed-out');
-  /** True while the user moves the slider, and until the line with its value is answered. */
+  /** True from the user's first move of the slider until the line with its value is answered. */
   private isPending = false;
 
   constructor(session: Session) {

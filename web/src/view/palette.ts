@@ -1,4 +1,4 @@
-// The colours of style.css for canvases. Only style.css defines the colours of light and dark mode.
+// The colours of theme.css for canvases; only theme.css defines the colours of light and dark mode.
 
 const COLOUR_NAMES = [
   'card', 'ink', 'soft', 'line', 'floor', 'grid', 'skin', 'skin-edge', 'frame', 'frame-edge', 'steel', 'tube',
@@ -19,7 +19,7 @@ export function palette(): Palette {
   return cachedPalette;
 }
 
-/** Calls `callback` when the colour scheme changes between light and dark. */
+/** Calls `callback` whenever the colour scheme changes between light and dark. */
 export function onPaletteChange(callback: () => void): void {
   changeCallbacks.push(callback);
 }

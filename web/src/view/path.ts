@@ -1,4 +1,4 @@
-// The panel in which a gesture is drawn: the end point of head or tail follows a closed line.
+// The panel in which the user draws a gesture: a closed line that the point of the head or of the tail follows.
 import type { DrawnGait, End, ReachArea } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -10,18 +10,18 @@ import type { Writer } from './writer';
 
 /** Least distance between two recorded points. */
 const MIN_POINT_DISTANCE_MM = 0.3;
-/** Least number of points of a line; fewer points are a tap. */
+/** Least number of points of a line; fewer points count as a tap. */
 const MIN_POINT_COUNT = 8;
 /** Number of points of a predefined line. */
 const SHAPE_POINT_COUNT = 96;
-/** Margin around the reachable area in the picture. */
+/** Margin around the workspace in the picture. */
 const MARGIN_MM = 4;
 
 type Point = [number, number];
 
 /**
- * Predefined lines: each returns the point, relative to the neutral point, at an angle of 0 to 2π along the line. The
- * unit is a tenth of the distance from the base to the neutral point.
+ * The predefined lines: each returns the point at an angle of 0 to 2π along the line, relative to the neutral point.
+ * The unit is a tenth of the distance from the base to the neutral point.
  */
 const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
   circle: (angle) => [Math.sin(angle), Math.cos(angle) - 1],
@@ -30,7 +30,7 @@ const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
   nod: (angle) => [0, Math.sin(angle)],
 };
 
-/** A number of a gesture that has an input. */
+/** The key of a gesture's number that has an input. */
 type GestureNumber = 'period' | 'size' | 'terms';
 /** Ranges of the inputs: the period in s, the size in percent, and the number of terms of the Fourier series. */
 const NUMBER_RANGES: Record<GestureNumber, Range> = {
@@ -45,22 +45,22 @@ export class PathView {
   private readonly shapeList = element<HTMLSelectElement>('path-shape');
   private readonly nameInput = element<HTMLInputElement>('path-name');
   private readonly trial: TrialView;
-  private readonly allowedArea = this.plane.appendChild(makeSvg('path', { class: 'allowed' }));
+  private readonly workspacePath = this.plane.appendChild(makeSvg('path', { class: 'allowed' }));
   private readonly baseLine = this.plane.appendChild(makeSvg('path', { class: 'base' }));
   private readonly drawnLine = this.plane.appendChild(makeSvg('path', { class: 'line' }));
   private readonly smoothedLine = this.plane.appendChild(makeSvg('path', { class: 'rounded' }));
   private readonly neutralDot = this.plane.appendChild(makeSvg('circle', { class: 'neutral', r: 1.5 }));
   /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
-  /** The area that the end point can reach; null until the panel is opened, or if there is none. */
-  private reachArea: ReachArea | null = null;
+  /** The workspace of the end's point; null until the panel is opened, or if there is none. */
+  private workspace: ReachArea | null = null;
 
   constructor(
     private readonly session: Session,
     writer: Writer,
   ) {
-    const gaitToTry = () => (this.gesture.points.length === 0 ? null : this.gesture);
-    this.trial = new TrialView(session, writer, { prefix: 'path', editedGait: gaitToTry, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
+    const editedGait = () => (this.gesture.points.length === 0 ? null : this.gesture);
+    this.trial = new TrialView(session, writer, { prefix: 'path', editedGait, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
     this.endList.addEventListener('change', () => {
       this.gesture = { ...this.gesture, end: this.endList.value as End };
       this.showPlane();
@@ -78,14 +78,14 @@ export class PathView {
     followShownRobot(element<HTMLDetailsElement>('path-editor'), session, () => this.showPlane(this.gesture.points.length > 0));
   }
 
-  /** Shows the plane of the chosen end, head or tail, with the drawn line if `isKept`, else with the chosen shape. */
-  private showPlane(isKept = false): void {
-    this.reachArea = this.session.robot.reachArea(this.gesture.end === 'head' ? 0 : 1);
-    if (!this.reachArea) return;
-    this.drawBackground(this.reachArea);
-    if (isKept) return this.changeGesture({});
+  /** Shows the plane of the chosen end, head or tail, with the current line if `keepsLine`, else the chosen shape. */
+  private showPlane(keepsLine = false): void {
+    this.workspace = this.session.robot.reachArea(this.gesture.end === 'head' ? 0 : 1);
+    if (!this.workspace) return;
+    this.drawBackground(this.workspace);
+    if (keepsLine) return this.changeGesture({});
     const pointAt = SHAPES[this.shapeList.value];
-    const [x, y] = this.reachArea.neutral;
+    const [x, y] = this.workspace.neutral;
     const tenth = Math.hypot(x, y) / 10;
     const angles = Array.from({ length: SHAPE_POINT_COUNT }, (_, n) => (2 * Math.PI * n) / SHAPE_POINT_COUNT);
     const points = pointAt ? angles.map(pointAt).map(([right, outward]): Point => [x + tenth * right, y + tenth * outward]) : [];
@@ -99,19 +99,19 @@ export class PathView {
   }
 
   /**
-   * Converts a point from the plane to the picture, or back. Outward is up in the picture for the head and down for the
+   * Converts a point from the plane to the picture or back. In the picture, outward is up for the head and down for the
    * tail.
    */
   private toPicture([x, y]: Point): Point {
     return [x, this.gesture.end === 'head' ? -y : y];
   }
 
-  /** Returns the SVG path through points, closed by default. */
-  private pathText(points: Point[], end = 'Z'): string {
-    return points.length === 0 ? '' : `M ${points.map((point) => this.toPicture(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${end}`;
+  /** Returns the SVG path through points, which is closed by default. */
+  private pathText(points: Point[], suffix = 'Z'): string {
+    return points.length === 0 ? '' : `M ${points.map((point) => this.toPicture(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${suffix}`;
   }
 
-  /** Draws the background: the reachable area, the base and the neutral point. */
+  /** Draws the background: the workspace, the base and the neutral point. */
   private drawBackground({ from, step, columns, allowed, neutral, shafts }: ReachArea): void {
     const rows = allowed.length / columns;
     const corner = (column: number, row: number): Point => [from[0] + (column - 0.5) * step, from[1] + (row - 0.5) * step];
@@ -125,7 +125,7 @@ export class PathView {
         column = endColumn;
       }
     }
-    this.allowedArea.setAttribute('d', cells.join(' '));
+    this.workspacePath.setAttribute('d', cells.join(' '));
     this.baseLine.setAttribute('d', this.pathText(shafts, ''));
     const [x, y] = this.toPicture(neutral);
     setAttributes(this.neutralDot, { cx: x, cy: y });
@@ -164,7 +164,7 @@ export class PathView {
       this.drawnLine.setAttribute('d', this.pathText(points, ''));
     };
     this.plane.addEventListener('pointerdown', (event) => {
-      if (!this.reachArea) return;
+      if (!this.workspace) return;
       this.plane.setPointerCapture(event.pointerId);
       points = [];
       this.smoothedLine.setAttribute('d', '');

@@ -1,4 +1,4 @@
-// Draws a text as a QR code, for a phone's camera.
+// Draws a link as a QR code for a phone's camera.
 import { encode } from 'uqr';
 
 import { makeSvg } from './make';
@@ -6,9 +6,9 @@ import { makeSvg } from './make';
 /** Width of the empty border in modules (ISO/IEC 18004, 9.1). */
 const BORDER_MODULES = 4;
 
-/** Returns a text as a QR code. Throws if the text is too long for one. */
-export function qrCode(text: string): SVGSVGElement {
-  const { size, data } = encode(text, { ecc: 'L', border: BORDER_MODULES });
+/** Makes the QR code of a link. Throws if the link is too long for one. */
+export function makeQrCode(link: string): SVGSVGElement {
+  const { size, data } = encode(link, { ecc: 'L', border: BORDER_MODULES });
   const darkModules = data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join('');
   return makeSvg('svg', { viewBox: `0 0 ${size} ${size}`, role: 'img', 'aria-label': 'QR code of the link to this robot' }, makeSvg('path', { d: darkModules }));
 }

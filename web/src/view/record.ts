@@ -1,4 +1,4 @@
-// The panel that records runs, saves pictures and films, and lets a second robot walk beside the first.
+// The panel that records runs, saves pictures and films, and lets a second robot walk beside the page's robot.
 import { Companion } from '../companion';
 import { restartWithGait } from '../gaits/try-gait';
 import { MAX_SECONDS, Recording } from '../recording';
@@ -14,7 +14,7 @@ import { makeSvg } from './make';
 import { palette } from './palette';
 import { isShown } from './rooms';
 
-/** MIME types of films with their file extensions; the one that makes the smallest files is first. */
+/** MIME types of films with their file extensions, in order of preference: the smallest files first. */
 const FILM_FORMATS = [
   ['video/webm;codecs=vp9', 'webm'],
   ['video/webm;codecs=vp8', 'webm'],
@@ -22,16 +22,16 @@ const FILM_FORMATS = [
   ['video/mp4', 'mp4'],
 ] as const;
 
-/** Period at which the firmware's core computes a frame. */
+/** Period of the firmware's frames. */
 const FRAME_SECONDS = 0.02;
 
-/** Two robots that walk side by side: the first is the page's own. */
+/** Two robots that walk side by side; the first is the page's robot. */
 interface Pair {
   /** The robot.toml of the second robot. */
   toml: string;
   /** The commands that start the robots' gaits. */
   gaits: [string, string];
-  /** The robots' names in the text that compares them. */
+  /** The robots' names in the comparison. */
   names: [string, string];
   /** The element that shows the comparison. */
   output: HTMLElement;
@@ -45,21 +45,21 @@ export class RecordView {
   private recording: Recording | null = null;
   private isRecording = false;
   /**
-   * `startedAt` is the real time at which the replay started, ms, and `startTime` the recording's time at that moment,
-   * s; null while the replay is paused or off.
+   * The running replay: `startedAt` is its start on the page's clock, ms, and `startTime` the recording's time then, s.
+   * Null while the replay is paused or off.
    */
   private playback: { startedAt: number; startTime: number } | null = null;
   private isReplaying = false;
   /** The film that is being recorded; null for none. */
   private film: MediaRecorder | null = null;
-  /** The second robot; null while the robot is alone. */
+  /** The second robot; null while there is none. */
   private companion: Companion | null = null;
   private pair: Pair | null = null;
-  /** True until the robot begins its gait; the companion then begins, too. */
+  /** True until the robot starts its gait; the companion then starts, too. */
   private isWaiting = false;
-  /** Time by which the companion is behind the robot, s. */
-  private pendingTime = 0;
-  /** Takes the requested picture after the next drawing of the floor; null without a request. */
+  /** Time by which the companion lags behind the robot, s. */
+  private pendingSeconds = 0;
+  /** Takes the requested picture after the next drawing of the floor; null if none is requested. */
   private onDrawn: (() => void) | null = null;
 
   constructor(
@@ -70,8 +70,8 @@ export class RecordView {
     onClick('record', () => this.setRecording(!this.isRecording));
     onClick('replay', () => this.setReplaying(!this.isReplaying));
     onClick('csv', () => this.recording && saveFile('run.csv', [this.recording.csv()], 'text/csv'));
-    onClick('png', () => this.takePicture(() => void this.savePng()));
-    onClick('svg', () => this.takePicture(() => void this.saveSvg()));
+    onClick('png', () => this.requestPicture(() => void this.savePng()));
+    onClick('svg', () => this.requestPicture(() => void this.saveSvg()));
     onClick('film', () => this.toggleFilm());
     onClick('both', () => void this.startBoth(this.chosenPair()));
     onClick('alone', () => this.removeCompanion());
@@ -86,7 +86,7 @@ export class RecordView {
     session.state.gait.subscribe((gait) => this.followGait(gait));
   }
 
-  /** Shows another robot; the recording of the previous one is dropped. */
+  /** Shows another robot, and drops the recording of the previous one. */
   private showRobot({ gaits }: Description): void {
     this.setRecording(false);
     this.recording = null;
@@ -104,19 +104,19 @@ export class RecordView {
     this.updateButtons();
   }
 
-  /** Adds a frame, which lasted `seconds`, to the recording, and advances the companion. */
+  /** Adds a frame, which lasts `seconds`, to the recording, and advances the companion. */
   addFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
     if (this.isRecording && this.recording && !this.recording.add(frame, widths, this.session.gait, seconds)) {
       this.setRecording(false);
       this.setMessage(`The recording is full: ${MAX_SECONDS} s.`);
     }
     if (!this.companion || this.isWaiting) return;
-    for (this.pendingTime += seconds; this.pendingTime > FRAME_SECONDS / 2; this.pendingTime -= FRAME_SECONDS) this.companion.step();
+    for (this.pendingSeconds += seconds; this.pendingSeconds > FRAME_SECONDS / 2; this.pendingSeconds -= FRAME_SECONDS) this.companion.step();
     const place = this.companion.frame?.place;
     if (place) this.floor.addToTrack(place, true);
   }
 
-  /** Starts and stops the companion together with the robot, whose new gait is `gait`. */
+  /** Starts or stops the companion together with the robot, whose new activity is `gait`. */
   private followGait(gait: string): void {
     const { companion, pair, isWaiting } = this;
     if (!companion || !pair) return;
@@ -126,7 +126,7 @@ export class RecordView {
     } else if (!isWaiting && gait === WORDS.stop) companion.send(WORDS.stop);
   }
 
-  /** Returns the frame to draw: the current one, or one of the replay. */
+  /** Returns the frame to draw: the current one, or that of the replay. */
   frameToDraw(current: Frame | null): Frame | null {
     const { recording } = this;
     if (!this.isReplaying || !recording) return current;
@@ -138,12 +138,12 @@ export class RecordView {
     return recording.frameAt(this.timeSlider.valueAsNumber)?.frame ?? current;
   }
 
-  /** The current frame of the second robot; null without one. */
+  /** The current frame of the companion; null if there is none. */
   get companionFrame(): Frame | null {
     return this.companion?.frame ?? null;
   }
 
-  /** Takes a requested picture; called after each drawing of the floor. */
+  /** Takes a picture if one is requested; called after each drawing of the floor. */
   afterDrawing(): void {
     this.onDrawn?.();
     this.onDrawn = null;
@@ -192,9 +192,9 @@ export class RecordView {
     this.updateButtons();
   }
 
-  /** Lets `take` be called after the next drawing of the floor, which is drawn even if the robot in 3D hides it. */
-  private takePicture(take: () => void): void {
-    this.onDrawn = take;
+  /** Requests a call of `save` after the next drawing of the floor, which is drawn even if the robot in 3D hides it. */
+  private requestPicture(save: () => void): void {
+    this.onDrawn = save;
     this.floor.paintsAlways = true;
   }
 
@@ -236,8 +236,8 @@ export class RecordView {
       const { Context } = await import('svgcanvas');
       const { clientWidth, clientHeight } = element('floor');
       const context = new Context(clientWidth, clientHeight);
-      const label = this.floor.redraw(context as unknown as CanvasRenderingContext2D);
-      // The package measures text by an inline style, which the page's security policy forbids.
+      const label = this.floor.drawWith(context as unknown as CanvasRenderingContext2D);
+      // The package measures text with an inline style, which the page's Content Security Policy forbids.
       context.getSvg().append(makeSvg('text', { x: label.x, y: label.y, fill: palette().ink, 'font-size': 12, 'font-family': 'sans-serif' }, label.text));
       saveFile('floor.svg', [context.getSerializedSvg()], 'image/svg+xml');
     } catch (error) {
@@ -275,7 +275,7 @@ export class RecordView {
       this.floor.clearTracks();
       companion.send(`${WORDS.speed} ${session.pace}`);
       companion.step();
-      Object.assign(this, { companion, pair, isWaiting: true, pendingTime: 0 });
+      Object.assign(this, { companion, pair, isWaiting: true, pendingSeconds: 0 });
       this.updateButtons();
       this.floor.fitTwoRobots();
       await session.drive(pair.gaits[0]);

@@ -2,8 +2,8 @@
 // under the other. The screen is kept on, since the page stops the robot when the screen goes dark.
 import { element } from './canvas';
 
-/** Duration of a buzz, ms. */
-const BUZZ_MS = 200;
+/** Duration of a vibration, ms. */
+const VIBRATION_MS = 200;
 
 export class Remote {
   private readonly button = element('remote');
@@ -11,9 +11,9 @@ export class Remote {
 
   constructor() {
     this.button.addEventListener('click', () => void (this.isOn ? this.leave() : this.enter()));
-    // The system's own gesture for leaving full screen also ends the remote.
+    // The system's own gesture that leaves full screen also leaves the remote control.
     document.addEventListener('fullscreenchange', () => !document.fullscreenElement && this.setRemote(false));
-    // The wake lock is lost when the page is hidden.
+    // A page that is hidden loses its wake lock.
     document.addEventListener('visibilitychange', () => !document.hidden && this.isOn && void this.keepScreenOn());
   }
 
@@ -21,14 +21,14 @@ export class Remote {
     return document.body.classList.contains('remote');
   }
 
-  /** Buzzes because the robot has stopped by itself. */
-  buzz(): void {
-    if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(BUZZ_MS);
+  /** Vibrates the phone, to tell that the robot has stopped by itself. */
+  vibrate(): void {
+    if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(VIBRATION_MS);
   }
 
   private async enter(): Promise<void> {
     this.setRemote(true);
-    // Some browsers, such as an iPhone's, lack some of these features; the remote works without them.
+    // Some browsers, such as that of an iPhone, lack some of these features; the remote control works without them.
     await document.documentElement.requestFullscreen?.().catch(() => {});
     const { orientation } = screen as Screen & { orientation?: { lock?(to: string): Promise<void> } };
     await orientation?.lock?.('landscape').catch(() => {});

@@ -1,4 +1,4 @@
-// The list of robots; those that are meant for tests come last, under a heading.
+// The list of robots: the user's own, those that come with the page, and, under a heading, those meant for tests.
 import { files } from '../files';
 import { element } from './canvas';
 
@@ -8,13 +8,13 @@ export class RobotChoice {
 
   private constructor(
     private readonly robots: string[],
-    forTests: string[],
+    testRobots: string[],
   ) {
     const testGroup = document.createElement('optgroup');
     testGroup.label = 'for tests';
     robots.forEach((name) => {
       const option = new Option(`${name}.toml`, name);
-      if (forTests.includes(name)) testGroup.append(option);
+      if (testRobots.includes(name)) testGroup.append(option);
       else this.list.add(option);
     });
     if (testGroup.childElementCount > 0) this.list.append(testGroup);
@@ -34,9 +34,7 @@ export class RobotChoice {
     return index < 0 ? null : index;
   }
 
-  /**
-   * Makes the list of the robots whose files come with the page. Throws an error with a message for the user if the
-   * list is missing.
+  /** Loads the list of the robots that come with the page. Throws an error with a message for the user if it is missing.
    */
   static async load(): Promise<RobotChoice> {
     const { all, tests } = await files.robots();
@@ -48,7 +46,7 @@ export class RobotChoice {
     this.list.addEventListener('change', action);
   }
 
-  /** The chosen robot's file name. */
+  /** The file name of the chosen robot; that of the first one if one of the user's own is chosen. */
   get chosenFile(): string {
     return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
   }
@@ -60,7 +58,7 @@ export class RobotChoice {
     return isListed;
   }
 
-  /** True if the user may choose. */
+  /** True if the user may choose a robot. */
   set isEnabled(isEnabled: boolean) {
     this.list.disabled = !isEnabled;
   }

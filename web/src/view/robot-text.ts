@@ -1,4 +1,4 @@
-// The panel of the robot.toml as text: it can be edited, opened, dropped into the box, undone, and shared as a link.
+// The panel of the robot.toml as text, which can be edited, opened, dropped on the page, undone, and shared as a link.
 import { addressParts } from '../address';
 import { linkTo, unpack } from '../link-text';
 import type { Refused } from '../robot';
@@ -8,23 +8,23 @@ import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';
 import type { Writer } from './writer';
 
-/** Largest number of robots that undo can restore. */
+/** Largest number of changes that can be undone. */
 const MAX_UNDO_STEPS = 50;
 
 export class RobotText {
   private readonly textBox = element<HTMLTextAreaElement>('robot-text');
   private readonly undoButton = element<HTMLButtonElement>('robot-undo');
   private readonly redoButton = element<HTMLButtonElement>('robot-redo');
-  /** The previous robots, the latest at the end. */
+  /** The robot.tomls before the last changes, the latest at the end. */
   private undoStack: string[] = [];
-  /** The robots that were undone, the latest at the end. */
+  /** The robot.tomls that were undone, the latest at the end. */
   private redoStack: string[] = [];
-  /** The session's robot that was shown last; empty before the first one. */
+  /** The session's robot.toml that was shown last; empty before the first. */
   private shownToml = '';
   /** The refusal of the shown text; null if the session's robot was loaded from it. */
   refusal: Refused | null = null;
 
-  /** `onChange` is called when the text or its refusal has changed. */
+  /** `onChange` is called when the text or its refusal changes. */
   constructor(
     private readonly session: Session,
     private readonly writer: Writer,
@@ -38,9 +38,9 @@ export class RobotText {
       void this.loadAndShow(this.textBox.value);
     });
     this.textBox.addEventListener('input', onChange);
-    this.undoButton.addEventListener('click', () => void this.undoLast());
-    this.redoButton.addEventListener('click', () => void this.redoLast());
-    element('robot-line').addEventListener('click', () => this.goToMistake());
+    this.undoButton.addEventListener('click', () => void this.undo());
+    this.redoButton.addEventListener('click', () => void this.redo());
+    element('robot-line').addEventListener('click', () => this.selectErrorLine());
     element('robot-link').addEventListener('click', () => void this.copyLink());
     element('robot-code').addEventListener('click', () => void this.toggleCode());
     session.followRobot(() => this.showRobot());
@@ -65,7 +65,7 @@ export class RobotText {
   /** Shows the session's robot. */
   private showRobot(): void {
     const { toml, file } = this.session;
-    // The name is empty while a file of the list is being read: then there is nothing to undo.
+    // The name is empty while a robot chosen from the list is loaded: there is nothing to undo then.
     if (file === '') this.undoStack = [];
     else if (this.shownToml !== '' && this.shownToml !== toml) this.undoStack = [...this.undoStack.slice(1 - MAX_UNDO_STEPS), this.shownToml];
     if (this.shownToml !== toml) this.redoStack = [];
@@ -74,7 +74,7 @@ export class RobotText {
     this.showRefusal(null);
   }
 
-  /** The shown text: the session's robot, or a text that is being edited or has a mistake. */
+  /** The shown text: the session's robot.toml, or a text that is being edited or has an error. */
   get draft(): string {
     return this.textBox.value;
   }
@@ -84,7 +84,7 @@ export class RobotText {
     return this.undoStack.length > 0 || this.refusal !== null;
   }
 
-  /** Loads the robot in the page's address, if there is one; returns false if it is invalid. */
+  /** Loads the robot in an address, if there is one; returns false if it is invalid. */
   async loadFromAddress(hash = location.hash): Promise<boolean> {
     try {
       const encoded = addressParts(hash).get('robot');
@@ -105,7 +105,7 @@ export class RobotText {
     await this.loadAndShow(toml);
   }
 
-  /** Loads a text as the robot, or shows it with its mistake; returns true if it was accepted. */
+  /** Loads a text as the robot, or shows it with its error; returns true if it was accepted. */
   async loadText(toml: string): Promise<boolean> {
     const refusal = await this.session.change(toml);
     if (!refusal) return true;
@@ -115,17 +115,17 @@ export class RobotText {
   }
 
   /**
-   * Loads a text as the robot; if it is refused, opens the panel and selects the line of the mistake. Returns true if
-   * accepted.
+   * Loads a text as the robot; if it is refused, opens the panel and selects the line with the error. Returns true if
+   * it was accepted.
    */
   private async loadAndShow(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
     reveal(this.textBox);
-    this.goToMistake();
+    this.selectErrorLine();
     return false;
   }
 
-  /** Loads the text as the robot and writes it to the board on USB. */
+  /** Loads the text as the robot and writes the robot to the board. */
   private async loadAndWrite(): Promise<void> {
     const session = this.session;
     if (this.textBox.value !== session.toml) await this.loadAndShow(this.textBox.value);
@@ -134,7 +134,7 @@ export class RobotText {
   }
 
   /** Undoes the last change: restores the previous robot, or the current one if the shown text is refused. */
-  async undoLast(): Promise<void> {
+  async undo(): Promise<void> {
     if (this.refusal) return this.showRobot();
     const { undoStack, redoStack, shownToml } = this;
     const lastToml = undoStack.at(-1);
@@ -142,7 +142,7 @@ export class RobotText {
   }
 
   /** Restores the robot that was undone last. */
-  private async redoLast(): Promise<void> {
+  private async redo(): Promise<void> {
     const { undoStack, redoStack, shownToml } = this;
     const nextToml = redoStack.at(-1);
     if (nextToml !== undefined) await this.restore(nextToml, [...undoStack, shownToml], redoStack.slice(0, -1));
@@ -151,7 +151,7 @@ export class RobotText {
   /** Loads an earlier robot into the session, with the stacks for undo and redo that belong to it. */
   private async restore(toml: string, undoStack: string[], redoStack: string[]): Promise<void> {
     const current = { undoStack: this.undoStack, redoStack: this.redoStack, shownToml: this.shownToml };
-    // A restored robot must not be recorded as a new change.
+    // The stacks are set first, so that the restored robot is not taken for a new change.
     Object.assign(this, { undoStack, redoStack, shownToml: toml });
     const refusal = await this.session.change(toml);
     if (!refusal) return;
@@ -176,8 +176,8 @@ export class RobotText {
     codeBox.replaceChildren();
     if (!isShown) return this.setMessage('');
     try {
-      const { qrCode } = await import('./qr-code');
-      codeBox.replaceChildren(qrCode(await linkTo(this.session.toml)));
+      const { makeQrCode } = await import('./qr-code');
+      codeBox.replaceChildren(makeQrCode(await linkTo(this.session.toml)));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
       this.setMessage(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
     } catch (error) {
@@ -187,13 +187,13 @@ export class RobotText {
 
   private readonly setMessage = (text: string): void => setText(element('robot-said'), text);
 
-  private goToMistake(): void {
+  private selectErrorLine(): void {
     const line = this.refusal?.line;
     if (line == null) return;
     const lines = this.textBox.value.split('\n');
-    const begin = lines.slice(0, line - 1).reduce((sum, text) => sum + text.length + 1, 0);
+    const start = lines.slice(0, line - 1).reduce((sum, text) => sum + text.length + 1, 0);
     this.textBox.focus();
-    this.textBox.setSelectionRange(begin, begin + (lines[line - 1]?.length ?? 0));
+    this.textBox.setSelectionRange(start, start + (lines[line - 1]?.length ?? 0));
     this.textBox.scrollTop = ((line - 4) / lines.length) * this.textBox.scrollHeight;
   }
 
@@ -204,7 +204,7 @@ export class RobotText {
     button.hidden = refusal?.line == null;
     button.textContent = `Go to line ${refusal?.line}`;
     this.setMessage('');
-    // The code that was shown belongs to another robot.
+    // A QR code that is still shown belongs to another text.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');
     this.textBox.setAttribute('aria-invalid', String(refusal !== null));

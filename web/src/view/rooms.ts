@@ -1,10 +1,10 @@
-// The rooms beside the stage, of which one is open. The part `room` of the page's address names it, so that links and
-// the browser's Back button open a room.
+// The rooms beside the stage, of which one is open. The parameter `room` of the page's address names it, so that links
+// and the browser's Back button open a room.
 import { addressParts } from '../address';
 import type { Description } from '../robot';
 import type { Session } from '../session';
 
-/** The event that the document receives after another room was opened. */
+/** The type of the event that is dispatched on the document after another room was opened. */
 export const ROOM_OPENED = 'room';
 
 const FIRST_ROOM = 'start';
@@ -32,10 +32,10 @@ export function openRoom(hash: string): void {
   for (const panel of room.querySelectorAll('details[open]')) panel.dispatchEvent(new Event('toggle'));
 }
 
-/** True if a panel is unfolded and its room is open; a panel that is not shown draws nothing. */
+/** True if a panel is unfolded and its room is open; other panels draw nothing. */
 export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closest<HTMLElement>('.room')?.hidden === false;
 
-/** Calls `show` once for each robot.toml, as soon as a panel is shown. */
+/** Calls `show` once for each robot.toml of the session, as soon as the panel is shown. */
 export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
   let shownToml = '';
   const update = () => {
@@ -48,7 +48,7 @@ export function followShownRobot(panel: HTMLDetailsElement, session: Session, sh
   session.followRobot(update);
 }
 
-/** Opens the room of an element, and its panel. */
+/** Opens the room and the panel of an element. */
 export function reveal(target: HTMLElement): void {
   const room = target.closest('.room');
   const panel = target.closest('details');

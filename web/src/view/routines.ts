@@ -1,4 +1,4 @@
-// The panel of routines: their steps, as in the text of robot.toml, and a recorder that makes a routine of a drive.
+// The panel of routines: their steps, as in robot.toml, and a recorder that makes a routine from a drive.
 import { follow } from '../follow';
 import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
 import { createRobotQuestion } from '../robot-helper';
@@ -12,12 +12,12 @@ import type { Writer } from './writer';
 
 /** The first step of a new routine. */
 const FIRST_STEP = 'stand 1 s';
-/** Least width and height of the path's picture without its margin. */
+/** Least width and height of the picture of the path without its margin. */
 const MIN_SIZE_MM = 160;
-/** Margin around the path in its picture. */
+/** Margin around the path in the picture. */
 const MARGIN_MM = 20;
 
-/** Formats a number without decimals, and without a minus sign for zero. */
+/** Formats a number without decimals; zero has no minus sign. */
 const formatRounded = (value: number) => (Math.round(value) + 0).toFixed(0);
 
 /** Returns a copy of the list with the item at the index `from` moved to the index `to`. */
@@ -35,7 +35,7 @@ export class RoutinesView {
   private readonly pathPicture = element<HTMLElement>('routine-path') as unknown as SVGSVGElement;
   private routines: Routine[] = [];
   private recorder: Recorder | null = null;
-  /** The recorded steps until they are stored under a name. */
+  /** The recorded steps until they are stored under a name or dropped. */
   private recordedSteps: string[] = [];
   /** The index of the dragged step, and its new index if it is dropped now; null without a drag. */
   private drag: { from: number; to: number } | null = null;
@@ -54,7 +54,7 @@ export class RoutinesView {
     onClick('keep', () => void this.keepRecorded());
     onClick('drop', () => this.offerToKeep([]));
     onClick('add', () => void this.addStep());
-    onClick('undo', () => void this.text.undoLast());
+    onClick('undo', () => void this.text.undo());
     onClick('start', () => void this.startRoutine());
     onClick('write', () => void writer.writeRobot({ message: element('routine-said'), progress: element('routine-progress') }));
     const { state } = session;
@@ -68,7 +68,7 @@ export class RoutinesView {
     follow([state.floor, state.servos], () => this.predict());
   }
 
-  /** Shows the routines of the text, if the panel is open. */
+  /** Shows the routines in the text, if the panel is shown. */
   show(): void {
     if (!isShown(this.panel)) return;
     const { value } = this.routineList;
@@ -92,14 +92,14 @@ export class RoutinesView {
 
   private readonly setMessage = (text: string): void => setText(element('routine-said'), text);
 
-  /** The chosen routine, with its steps in the order to which the user is dragging them; null without a routine. */
+  /** The chosen routine, with a dragged step at its new index; null if there is no routine. */
   private get chosenRoutine(): Routine | null {
     const chosen = this.routines.find(({ name }) => name === this.routineList.value);
     if (!chosen || !this.drag) return chosen ?? null;
     return { ...chosen, steps: moveItem(chosen.steps, this.drag.from, this.drag.to) };
   }
 
-  /** Starts a recording, or ends it and offers to keep its steps. */
+  /** Starts a recording, or ends it and offers to store its steps. */
   private toggleRecording(): void {
     const { description, gait, pace, clock } = this.session;
     const steps = this.recorder?.steps(clock) ?? null;
@@ -117,7 +117,7 @@ export class RoutinesView {
     if (this.recorder) this.setMessage(`Recording: ${this.recorder.steps(this.session.clock).join(', ') || 'drive now'}`);
   }
 
-  /** Offers to store recorded steps under a name; without steps, hides the offer. */
+  /** Offers to store recorded steps under a name; hides the offer if there are no steps. */
   private offerToKeep(steps: string[]): void {
     this.recordedSteps = steps;
     element('routine-recorded').hidden = steps.length === 0;
@@ -134,7 +134,7 @@ export class RoutinesView {
     const { draft } = this.text;
     if (Robot.routines(draft).some((routine) => routine.name === name)) return this.setMessage(`${name} is there already: give it another name.`);
     const { text, refusal } = Robot.putSteps(draft, name, this.recordedSteps);
-    // A routine with a mistake in a step is stored anyway: the step's block shows the mistake.
+    // A routine with an invalid step is stored anyway: the step's block shows the error.
     if (refusal && refusal.key !== `routine.${name}.steps`) return this.setMessage(refusal.refused);
     this.offerToKeep([]);
     await this.text.loadText(text);
@@ -142,14 +142,14 @@ export class RoutinesView {
     this.show();
   }
 
-  /** Appends a copy of the last step, and selects it. */
+  /** Appends a copy of the last step, and selects its text. */
   private async addStep(): Promise<void> {
     const { steps, name } = this.chosenRoutine ?? { steps: [], name: 'patrol' };
     await this.replaceSteps([...steps, steps.at(-1) ?? FIRST_STEP], name);
     this.inputAt(steps.length)?.select();
   }
 
-  /** Replaces the steps of the chosen routine. */
+  /** Replaces the steps of the routine `name`, by default the chosen one. */
   private async replaceSteps(steps: string[], name = this.routineList.value): Promise<void> {
     this.setMessage('');
     await this.text.loadText(Robot.putSteps(this.text.draft, name, steps).text);
@@ -178,25 +178,25 @@ export class RoutinesView {
     const steps = chosenRoutine?.steps ?? [];
     while (stepList.children.length > steps.length) stepList.lastElementChild?.remove();
     while (stepList.children.length < steps.length) stepList.append(this.makeBlock(stepList.children.length));
-    const mistakenIndex = chosenRoutine && refusal?.key === `routine.${chosenRoutine.name}.steps` ? mistakenStepIndex(refusal) : null;
+    const invalidIndex = chosenRoutine && refusal?.key === `routine.${chosenRoutine.name}.steps` ? invalidStepIndex(refusal) : null;
     steps.forEach((step, index) => {
       const [block, input] = [stepList.children[index], this.inputAt(index)];
       if (!block || !input) return;
       if (input.value !== step) input.value = step;
       block.classList.toggle('held', this.drag?.to === index);
-      input.setAttribute('aria-invalid', String(mistakenIndex === index));
-      if (mistakenIndex === index) input.setAttribute('aria-describedby', this.refusalBox.id);
+      input.setAttribute('aria-invalid', String(invalidIndex === index));
+      if (invalidIndex === index) input.setAttribute('aria-describedby', this.refusalBox.id);
       else input.removeAttribute('aria-describedby');
     });
     showMessage(this.refusalBox, refusal?.refused ?? '');
-    if (mistakenIndex !== null) stepList.children[mistakenIndex]?.append(this.refusalBox);
+    if (invalidIndex !== null) stepList.children[invalidIndex]?.append(this.refusalBox);
     else stepList.after(this.refusalBox);
     element<HTMLButtonElement>('routine-undo').disabled = !canUndo;
     for (const name of ['start', 'write']) element<HTMLButtonElement>(`routine-${name}`).disabled = !chosenRoutine || refusal !== null;
     element('routine-none').hidden = chosenRoutine !== null;
   }
 
-  /** Makes the block of the step at an index: its grip, its input and its buttons. */
+  /** Makes the block of the step at an index, with a grip, an input and buttons. */
   private makeBlock(index: number): HTMLLIElement {
     const grip = make('span', { className: 'grip', ariaHidden: 'true' }, '⠿');
     this.addDragHandlers(grip, index);
@@ -220,7 +220,7 @@ export class RoutinesView {
     return this.stepList.children[index]?.querySelector(`[aria-label^="${label}"]`) ?? null;
   }
 
-  /** Lets a pointer drag a step by its grip to another index; the predicted path follows. */
+  /** Lets a pointer drag a step by its grip to another index, and updates the predicted path meanwhile. */
   private addDragHandlers(grip: HTMLElement, index: number): void {
     const indexAt = (y: number) => [...this.stepList.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
     const dragTo = (to: number) => {
@@ -271,7 +271,7 @@ export class RoutinesView {
 }
 
 /** Returns the index of the step that a refusal names; null if it names none. */
-function mistakenStepIndex({ refused }: Refused): number | null {
+function invalidStepIndex({ refused }: Refused): number | null {
   const stepText = /: step (\d+), /.exec(refused)?.[1];
   return stepText === undefined ? null : Number(stepText) - 1;
 }

@@ -1,4 +1,4 @@
-// The panel of the four servos' pulses: as an oscilloscope shows them, and their widths as numbers.
+// The panel of the four servos' pulses: the pulses as on an oscilloscope, and their widths as numbers.
 import { effect } from '@preact/signals-core';
 
 import type { Description, Scene } from '../robot';
@@ -9,18 +9,18 @@ import { make } from './make';
 import { palette, servoColour } from './palette';
 import { isShown } from './rooms';
 
-/** Time span of the scope in cycles of the processor: three frames. */
+/** Time span of the scope, CPU cycles: three frames. */
 const SPAN_CYCLES = 0.06 * FREQUENCY_HZ;
 const CYCLES_PER_US = FREQUENCY_HZ / 1e6;
 
-/** A pulse: the time of its rising edge and its width, in cycles of the processor. */
+/** A pulse of a servo: the time of its rising edge and its width, CPU cycles. */
 interface Pulse {
   servo: number;
   riseCycle: number;
   widthCycles: number;
 }
 
-/** Returns the name on the board of a pin with an Arduino number. */
+/** Returns the name that the board has for the pin with this Arduino number. */
 function pinName(pin: number): string {
   return pin >= 14 ? `A${pin - 14}` : `D${pin}`;
 }
@@ -32,14 +32,14 @@ export class ScopeView {
   private pins: number[] = [];
   private pulses: Pulse[] = [];
   private readonly note = element('scope-note');
-  /** Pulse widths of the latest frame, cycles; 0 for no pulse. */
+  /** Pulse widths of the latest frame, CPU cycles; 0 for no pulse. */
   private frameWidths = [0, 0, 0, 0];
-  /** True on the simulated board, whose pulses are known; a real board sends only its pose. */
+  /** True for the simulated board, whose pulses are known; a real board reports only its pose. */
   private hasPulses = true;
 
   constructor(session: Session) {
     session.followRobot((description) => this.showRobot(description));
-    effect(() => this.changeLink(session.isReal));
+    effect(() => this.followLink(session.isReal));
   }
 
   private showRobot({ servos }: Description): void {
@@ -58,14 +58,14 @@ export class ScopeView {
   }
 
   /** Switches to a simulated or a real board. */
-  private changeLink(isReal: boolean): void {
+  private followLink(isReal: boolean): void {
     this.hasPulses = !isReal;
     this.note.hidden = !isReal;
     this.pulses = [];
     this.frameWidths = [0, 0, 0, 0];
   }
 
-  /** Adds a pulse of the pin with an Arduino number. */
+  /** Adds a pulse of the pin with this Arduino number; times are CPU cycles. */
   addPulse(pin: number, riseCycle: number, widthCycles: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
@@ -73,12 +73,12 @@ export class ScopeView {
     if (this.pulses.length > 64) this.pulses.splice(0, 32);
   }
 
-  /** Sets the pulse widths of the latest frame, in cycles; 0 for no pulse. */
+  /** Sets the pulse widths of the latest frame, CPU cycles; 0 for no pulse. */
   setWidths(widths: readonly number[]): void {
     this.frameWidths = [...widths];
   }
 
-  /** Updates the table; called less often than `draw`, since the browser lays out the page again for it. */
+  /** Updates the table; called less often than `draw`, since each change of a text costs a layout of the page. */
   updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.rows.forEach(({ width, angle }, servo) => {
@@ -90,11 +90,11 @@ export class ScopeView {
     });
   }
 
-  /** Draws the pulses up to the cycle `currentCycle`, which is at the right edge. */
+  /** Draws the pulses up to `currentCycle`, which is at the right edge. */
   draw(currentCycle: number): void {
-    const area = prepareSurface(this.canvas);
-    if (!area) return;
-    const { context, width, height } = area;
+    const surface = prepareSurface(this.canvas);
+    if (!surface) return;
+    const { context, width, height } = surface;
     const rowHeight = height / 4;
     const xOf = (cycle: number) => width * (1 - (currentCycle - cycle) / SPAN_CYCLES);
     for (let servo = 0; servo < 4; servo++) {

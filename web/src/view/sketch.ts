@@ -1,5 +1,5 @@
-// A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused while
-// the user drags.
+// A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused during
+// the drag.
 import type { Edits, Length, Scene, Point } from '../robot';
 import { createRobotQuestion } from '../robot-helper';
 import type { RobotWorkerApi } from '../robot-worker';
@@ -15,7 +15,7 @@ import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 type Question = Parameters<RobotWorkerApi['lengths']>[0];
 type Answer = ReturnType<RobotWorkerApi['lengths']>;
 
-/** Movement of the pointer, in CSS pixels, beyond which a press is a drag. */
+/** Movement of the pointer above which a press is a drag, CSS pixels. */
 const DRAG_THRESHOLD_PX = 3;
 /** Margin around the robot in the drawing. */
 const MARGIN_MM = 14;
@@ -26,12 +26,12 @@ export class Sketch {
   private readonly symmetryBox = element<HTMLInputElement>('alike');
   private readonly barGroup = this.picture.appendChild(makeSvg('g', {}));
   private readonly jointGroup = this.picture.appendChild(makeSvg('g', {}));
-  /** Asks for a drawing of the robot with other lengths. */
-  private readonly robotQuestion = createRobotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
+  /** Tries other lengths in a worker. */
+  private readonly lengthsQuestion = createRobotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
   private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.askRobot());
-  /** The dragged joint, as it was at the start of the drag; null without a drag. */
+  /** The dragged joint, as at the start of the drag; null if none is dragged. */
   private draggedJoint: Joint | null = null;
-  /** True from the end of a drag until its last position is answered. */
+  /** True from the end of a drag until the answer for its last position. */
   private isDragEnding = false;
 
   constructor(
@@ -50,35 +50,35 @@ export class Sketch {
 
   /** Requests a drawing of the session's robot, and the range of the slider's length. */
   private askRobot(): void {
-    this.robotQuestion.ask({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
+    this.lengthsQuestion.ask({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
-  /** Tries the lengths of a drag; `isLast` is true at the drag's end. */
+  /** Tries the lengths of a drag; `isLast` is true at the end of the drag. */
   private tryOut(edits: Edits, isLast: boolean): void {
     this.isDragEnding ||= isLast;
-    this.robotQuestion.ask({ toml: this.session.toml, edits, isLast, keys: [] });
+    this.lengthsQuestion.ask({ toml: this.session.toml, edits, isLast, keys: [] });
   }
 
-  /** Searches for valid lengths in place of refused ones, and offers them. */
+  /** Searches for valid lengths instead of refused ones, and offers them. */
   offerValidLengths(edits: Edits): void {
-    this.robotQuestion.ask({ toml: this.session.toml, edits, isLast: true, keys: [] });
+    this.lengthsQuestion.ask({ toml: this.session.toml, edits, isLast: true, keys: [] });
   }
 
   private handleAnswer({ edits, text, refusal, scene, nearest, without, isLast, range }: Answer): void {
     if (scene) this.draw(scene, edits.length === 0);
     if (range) this.applyRange(range);
     if (edits.length === 0) return;
-    // This is the answer to `offerValidLengths`: the user typed a number that was refused.
+    // This is the answer for `offerValidLengths`: the user has typed a number that was refused.
     if (isLast && !this.isDragEnding) return showOffers({ nearest, without }, this.session);
     if (!isLast) this.fit.checkDragged(refusal ? null : text);
     const { lengths } = this.session.description;
-    const stayText = !isLast ? '' : nearest ? ` It is ${formatLengths(nearest.lengths, lengths)}, the nearest valid value.` : ' It stays as it was.';
-    this.message.textContent = refusal ? `${describeRefusal(formatLengths(edits, lengths), edits, refusal, lengths)}${stayText}` : `${formatLengths(edits, lengths)}.`;
+    const outcomeText = !isLast ? '' : nearest ? ` It is ${formatLengths(nearest.lengths, lengths)}, the nearest valid value.` : ' It stays as it was.';
+    this.message.textContent = refusal ? `${describeRefusal(formatLengths(edits, lengths), edits, refusal, lengths)}${outcomeText}` : `${formatLengths(edits, lengths)}.`;
     this.message.classList.toggle('refusal', refusal !== null);
     if (isLast) void this.endDrag(refusal ? (nearest?.text ?? null) : text).then(() => showOffers({ nearest: null, without }, this.session));
   }
 
-  /** Ends a drag with a new robot.toml; null if the robot stays. */
+  /** Ends a drag, and loads the resulting robot.toml; null if the robot stays. */
   private async endDrag(toml: string | null): Promise<void> {
     const session = this.session;
     this.isDragEnding = false;
@@ -100,9 +100,10 @@ export class Sketch {
   }
 
   /**
-   * Draws the robot; if `isViewFitted`, also fits the view to it. During a drag the view and the joints' elements stay.
+   * Draws the robot; if `fitsView`, also fits the view to it. During a drag, the view and the elements of the joints
+   * stay.
    */
-  private draw(scene: Scene, isViewFitted: boolean): void {
+  private draw(scene: Scene, fitsView: boolean): void {
     const toPicture = ([x, y]: Point): Point => [x, -y];
     const lengths = new Map(this.session.description.lengths.map((length) => [length.key, length]));
     this.barGroup.replaceChildren(
@@ -116,13 +117,13 @@ export class Sketch {
       }),
     );
     const points = [...scene.points, ...scene.legs.flatMap(({ foot, joints }) => [foot, ...joints]), ...scene.shafts].map(toPicture);
-    if (isViewFitted && !this.draggedJoint) {
+    if (fitsView && !this.draggedJoint) {
       const [xs, ys] = [points.map(([x]) => x), points.map(([, y]) => y)];
       const [left, top] = [Math.min(...xs) - MARGIN_MM, Math.min(...ys) - MARGIN_MM];
       this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + MARGIN_MM - left} ${Math.max(...ys) + MARGIN_MM - top}`);
     }
     if (this.draggedJoint) {
-      // Joints are drawn where the lengths put them, so the dragged joint may be away from the pointer.
+      // The joints are drawn where the lengths put them, so the dragged joint may be away from the pointer.
       joints(scene, () => 0).forEach(({ position: [x, y] }, n) => setAttributes(this.jointGroup.children[n], { cx: x, cy: -y }));
       return;
     }

@@ -1,5 +1,5 @@
-// The trial of an edited gait by a simulation: its figures, the nearest valid values if it is refused, and the buttons
-// that use the gait.
+// The view of the trial of an edited gait in a simulation: its figures, the nearest valid values if the gait is
+// refused, and the buttons that use the gait.
 import { applyGait, tryGait } from '../gaits/try-gait';
 import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
 import { createRobotQuestion } from '../robot-helper';
@@ -8,8 +8,8 @@ import { element, setText } from './canvas';
 import { button } from './make';
 import type { Writer } from './writer';
 
-/** The part of a gait editor that its trial uses. */
-export interface GaitEditor {
+/** The gait editor, as its trial uses it. */
+export interface TrialEditor {
   /** The prefix of the editor's element ids. */
   prefix: 'gait' | 'path';
   /** Returns the edited gait; null if there is none. */
@@ -18,10 +18,10 @@ export interface GaitEditor {
   change(key: Alternative, value: number): void;
 }
 
-/** Formats a number with a unit; null stands for a displacement that is not certain. */
+/** Formats a number with a unit; null stands for an uncertain displacement. */
 const formatNumber = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
-/** Formats the figures of a trial; the speed is forward for the unit mm/s, and else that of the turn. */
+/** Formats the figures of a trial; the speed is that of walking if `unit` is mm/s, else that of turning. */
 export function formatFigures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
   const [displacement, speedUnit] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
@@ -34,7 +34,7 @@ export function formatFigures({ forward, turn, period, least, limit, margin, ser
   };
 }
 
-/** The label of a button that offers a valid value. */
+/** The labels of the buttons that offer a valid value. */
 const OFFER_LABELS: Record<Alternative, (value: number) => string> = {
   amplitude: (value) => `Amplitude ${value}° would do`,
   size: (value) => `A size of ${(100 * value).toFixed(0)} % would do`,
@@ -43,13 +43,13 @@ const OFFER_LABELS: Record<Alternative, (value: number) => string> = {
 
 export class TrialView {
   private readonly trialQuestion = createRobotQuestion<OnFloor & { gait: EditedGait }, Trial | NoTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
-  /** The last answer; null if the gait was refused. */
+  /** The last valid trial; null if the gait was refused. */
   private trial: Trial | null = null;
 
   constructor(
     private readonly session: Session,
     private readonly writer: Writer,
-    private readonly editor: GaitEditor,
+    private readonly editor: TrialEditor,
   ) {
     this.element('try').addEventListener('click', () => void this.tryEditedGait());
     this.element('write').addEventListener('click', () => void this.writeToBoard());

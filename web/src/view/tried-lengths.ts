@@ -1,16 +1,16 @@
-// Lengths that the user tried: their text, the reason for a refusal, and buttons for valid alternatives.
+// Lengths that the user has tried: their text, the reason for a refusal, and buttons for valid alternatives.
 import type { Edits, Length, Refused, TriedLengths } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { button } from './make';
 
-/** Returns the edit of a length and, if `isSymmetric`, the same edit of its twin on the other side. */
+/** Returns the edit of a length and, if `isSymmetric`, the same edit of its twin on the opposite side. */
 export function editsWithTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
   const twin = lengths.find((length) => length.key === key)?.twin ?? key;
   return [...new Set(isSymmetric ? [key, twin] : [key])].map((editedKey) => [editedKey, value]);
 }
 
-/** Formats lengths as a text, grouped by value, such as `l1 = l4 = 30 mm`. */
+/** Formats lengths, grouped by their values, such as `l1 = l4 = 30 mm`. */
 export function formatLengths(edits: Edits, lengths: Length[]): string {
   const keysByValue = new Map<number, string[]>();
   for (const [key, value] of edits) keysByValue.set(value, [...(keysByValue.get(value) ?? []), key]);
@@ -19,20 +19,20 @@ export function formatLengths(edits: Edits, lengths: Length[]): string {
 }
 
 /**
- * Returns a sentence that says why lengths are refused; `lengthsText` names the lengths, and `lengths` are those of the
- * current robot.
+ * Returns a sentence with the reason why lengths are refused; `lengthsText` names these lengths, and `lengths` are
+ * those of the current robot.
  */
 export function describeRefusal(lengthsText: string, edits: Edits, { refused, meaning, key }: Refused, lengths: Length[]): string {
   const lengthByKey = new Map(lengths.map((length) => [length.key, length]));
   const changes = edits.map(([editedKey, value]) => value - (lengthByKey.get(editedKey)?.value ?? value));
   const [more, less] = edits.every(([editedKey]) => lengthByKey.get(editedKey)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
   const judgement = changes.every((change) => change >= 0) ? `too ${more}` : changes.every((change) => change <= 0) ? `too ${less}` : 'not possible';
-  // Without a meaning the message has the key as its subject.
+  // A refusal without a meaning has the key as the subject of its message.
   const reason = meaning ?? refused.slice(Math.max(0, refused.indexOf(key))).replace(key, lengthByKey.get(key)?.label ?? key);
   return `${lengthsText} is ${judgement}: ${reason}.`;
 }
 
-/** Shows a button for each valid alternative to refused lengths; for null, removes the buttons. */
+/** Shows a button for each valid alternative to refused lengths; null removes the buttons. */
 export function showOffers(alternatives: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
   const { nearest = null, without = null } = alternatives ?? {};
   const changeTo = (text: string) => () => void session.change(text);

@@ -1,9 +1,9 @@
-// The list of problems, one line for each cause. A line stays until its cause is gone or the user dismisses it.
+// The list of problems, with one line for each cause. A line stays until its cause is gone or the user dismisses it.
 import type { Cause } from '../trouble';
 import { element } from './canvas';
 import { button, make, paragraph } from './make';
 
-/** A button that solves a problem. */
+/** A button that solves a problem: its label and its action. */
 export interface Remedy {
   label: string;
   action: () => void;
@@ -13,7 +13,7 @@ export class Troubles {
   private readonly box = element('trouble');
   private readonly lines = new Map<Cause, HTMLElement>();
 
-  /** Shows the message for a cause in place of its previous one; null removes it. */
+  /** Replaces the message for a cause; null removes it. */
   setMessage(cause: Cause, message: string | null, remedy: Remedy | null = null): void {
     const previousLine = this.lines.get(cause);
     if (message !== null && previousLine?.firstChild?.textContent === message) return;

@@ -5,12 +5,12 @@ import type { Session } from '../session';
 import { element } from './canvas';
 import { make } from './make';
 
-/** Number of decimals of each slider's value; its unit is in the slider's label. */
+/** Number of decimals of each slider's value; the unit is in the slider's label. */
 const DECIMALS = { force: 1, play: 1, leaf: 1, twist: 1, friction: 2, ratio: 2, mass: 0 };
 type SliderName = keyof typeof DECIMALS;
 const SLIDER_NAMES = Object.keys(DECIMALS) as SliderName[];
 
-/** The label of each of the robot's inputs: the event that closes its contact. */
+/** The label of each input of the robot: the event that closes its contact. */
 const CONTACT_LABELS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
 
 export class World {
@@ -44,7 +44,7 @@ export class World {
     this.driveList.value = floor.kind;
     for (const name of SLIDER_NAMES) {
       const input = this.sliderOf(name);
-      // The slider widens for a value beyond its range.
+      // The range of the slider grows to include the value.
       if (floor[name] > Number(input.max)) input.max = String(floor[name]);
       if (floor[name] < Number(input.min)) input.min = String(floor[name]);
       input.value = String(floor[name]);
@@ -67,7 +67,7 @@ export class World {
     this.enableSliders(this.session.floor);
   }
 
-  /** Shows the servo model and its supply voltage, which is the model's own unless the user has set another. */
+  /** Shows the servo model and its voltage, which is the model's own unless the user has set another. */
   private showServos(): void {
     const { description, servos } = this.session;
     const [name = '', supply] = servos.split(' at ');
@@ -82,9 +82,9 @@ export class World {
 
   /** Shows a checkbox for each input of the robot: its simulated contact is closed while the box is ticked. */
   private showInputs(): void {
-    const { description, closedInputs: closed } = this.session;
+    const { description, closedInputs } = this.session;
     const boxes = description.inputs.map(([name]) => {
-      const box = make('input', { type: 'checkbox', checked: closed.has(name) });
+      const box = make('input', { type: 'checkbox', checked: closedInputs.has(name) });
       box.addEventListener('change', () => this.session.setContact(name, box.checked));
       return make('label', {}, box, ` ${CONTACT_LABELS[name] ?? name}`);
     });
@@ -96,12 +96,12 @@ export class World {
     return element<HTMLInputElement>(name);
   }
 
-  /** Enables the sliders that have an effect, and disables the others. */
+  /** Enables only the sliders that have an effect. */
   private enableSliders(floor: Floor): void {
     const hasSprings = floor.kind !== 'rigid';
     const isElastic = hasSprings || this.session.servos !== 'ideal';
     this.sliderOf('force').disabled = !hasSprings;
-    // If neither springs nor servos yield, friction has no effect, and neither has mass if no foot is too long.
+    // If neither springs nor servos yield, friction has no effect; mass has none if, besides, no foot is too long.
     this.sliderOf('friction').disabled = !isElastic;
     this.sliderOf('mass').disabled = !isElastic && floor.twist === 0;
     this.sliderOf('leaf').disabled = floor.twist === 0;
@@ -115,9 +115,9 @@ export class World {
     input.setAttribute('aria-valuetext', text);
   }
 
-  /** Sets the sliders' values in the session. */
+  /** Applies the sliders' values to the session. */
   private applyFloor(): void {
-    // A slider that was not moved keeps its exact value.
+    // A value that its slider shows unchanged keeps its exact number.
     const floor: Floor = { ...this.session.floor, kind: this.driveList.value as Kind };
     for (const name of SLIDER_NAMES) {
       const value = this.sliderOf(name).valueAsNumber;

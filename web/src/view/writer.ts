@@ -1,4 +1,4 @@
-// Writes firmware or robot to a board, and shows the progress and the result in the caller's elements.
+// Writes the firmware, the robot or both to a board, and shows the progress and the result in the caller's elements.
 import { signal } from '@preact/signals-core';
 
 import type { Progress, Session } from '../session';
@@ -11,13 +11,13 @@ export interface Display {
   message: HTMLElement;
 }
 
-/** What is written: the page's robot alone, the firmware and the robot, or the image of a chosen file. */
+/** The content to write: the page's robot alone, firmware and robot, or the image of a chosen file. */
 export type WriteContent = 'robot' | 'all' | Uint8Array;
 
 /** The message when no board is connected. */
-const NO_BOARD = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
+const NO_BOARD_MESSAGE = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
 
-/** The message of each step, and the percentages of the progress bar at which the step begins and ends. */
+/** The message of each step, and the percentages of the progress bar at its start and at its end. */
 const PROGRESS_STEPS = {
   again: ['no answer; the board is called again…', 0, 0],
   reading: ['reading what the board has…', 0, 25],
@@ -31,10 +31,10 @@ export class Writer {
 
   constructor(private readonly session: Session) {}
 
-  /** Writes the page's robot alone to a real board; returns true if it is there and answers. */
+  /** Writes the page's robot alone to a real board; returns true if it was written and answers. */
   async writeRobot(display: Display): Promise<boolean> {
     if (this.session.isReal) return this.write('robot', display);
-    display.message.textContent = NO_BOARD;
+    display.message.textContent = NO_BOARD_MESSAGE;
     return false;
   }
 
@@ -53,14 +53,14 @@ export class Writer {
     let isWritten = false;
     const showProgress: Progress = (step, done, total) => {
       const [text, from, to] = PROGRESS_STEPS[step];
-      // The bar never goes back, although the first page of the program is written after all others were verified.
+      // The bar never moves back, although the first page of the program is written after all others were verified.
       progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);
       setText(message, text);
     };
     try {
       await (content === 'robot' ? session.flash(session.robotSection, true, showProgress) : session.flash(content === 'all' ? session.image : content, false, showProgress));
       isWritten = true;
-      // The name shows that a simulation was written, not a board.
+      // The name tells that the simulated board was written, not a real one.
       const targetText = isReal ? '' : ` to the ${name}`;
       message.textContent = `written${targetText} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
