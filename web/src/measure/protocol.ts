@@ -194,9 +194,7 @@ export class Protocol {
     }
   }
 
-  /**
-   * Returns the gait that walks farthest forward (backward if `ahead` is negative) and hardly turns; null if none does.
-   */
+  /** Returns the gait that walks farthest forward (backward if `ahead` is negative) and hardly turns, or null. */
   private gaitToward(ahead: number): PredictedCycle | null {
     const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(ahead) : 0);
     const [best] = this.stage.predictions().sort((a, b) => progressOf(b) - progressOf(a));
