@@ -39,6 +39,7 @@ pub struct Setup {
 /// A film, of which only the tags are stored.
 #[derive(Debug, Clone, Default)]
 pub struct Film {
+    /// Width and height of the pictures, px.
     picture_size: [usize; 2],
     frames: Vec<Frame>,
     /// The corners of the last picture's tags.
@@ -82,21 +83,24 @@ impl Film {
     /// Fails if the picture differs in size from the first one, is not later than the previous one, or shows a tag
     /// twice.
     pub fn add(&mut self, seconds: f64, picture: &Picture) -> Result<TagCorners, Trouble> {
-        let number = self.frames.len() + 1;
+        let picture_number = self.frames.len() + 1;
         match self.frames.last() {
             None => self.picture_size = picture.size(),
             Some(_) if self.picture_size != picture.size() => {
-                return Err(Trouble::SizeDiffers { number });
+                return Err(Trouble::SizeDiffers { picture_number });
             }
             Some(previous) if seconds <= previous.seconds => {
-                return Err(Trouble::TimeNotLater { number });
+                return Err(Trouble::TimeNotLater { picture_number });
             }
             Some(_) => {}
         }
         let mut tags = [None; CODES.len()];
         for tag in self.find_tags(picture) {
             if tags[tag.id].replace(tag.corners).is_some() {
-                return Err(Trouble::DuplicateTag { id: tag.id, number });
+                return Err(Trouble::DuplicateTag {
+                    id: tag.id,
+                    picture_number,
+                });
             }
         }
         self.frames.push(Frame { seconds, tags });
@@ -172,14 +176,14 @@ impl Film {
 
     /// Checks that every floor tag is visible at least once, and the deck tag in most pictures.
     fn check_tags(&self) -> Result<(), Trouble> {
-        let pictures = self.frames.len();
+        let picture_count = self.frames.len();
         let count_of = |id: usize| {
             self.frames
                 .iter()
                 .filter(|frame| frame.tags[id].is_some())
                 .count()
         };
-        if pictures == 0 {
+        if picture_count == 0 {
             return Err(Trouble::NoPictures);
         }
         if (0..CODES.len()).all(|id| count_of(id) == 0) {
@@ -189,10 +193,10 @@ impl Film {
             return Err(Trouble::NoFloorTag { id });
         }
         let visible_count = count_of(DECK_TAG_ID);
-        if (visible_count as f64) < (1.0 - MAX_MISSING_SHARE) * pictures as f64 {
+        if (visible_count as f64) < (1.0 - MAX_MISSING_SHARE) * picture_count as f64 {
             return Err(Trouble::DeckTagTooRare {
                 visible_count,
-                pictures,
+                picture_count,
             });
         }
         Ok(())
@@ -259,19 +263,22 @@ impl Film {
                     .collect(),
             }]);
         }
-        let pictures = self
+        let picture_count = self
             .frames
             .iter()
             .filter(|frame| frame.floor_corners().is_none())
             .count();
-        if pictures as f64 > MAX_MISSING_SHARE * self.frames.len() as f64
+        if picture_count as f64 > MAX_MISSING_SHARE * self.frames.len() as f64
             || complete_views.is_empty()
         {
-            return Err(Trouble::CameraMoved { pictures });
+            return Err(Trouble::CameraMoved { picture_count });
         }
-        let view_of = |i: usize| View {
-            floor_corners: complete_views[i].0,
-            deck_corners: vec![complete_views[i].1],
+        let view_of = |i: usize| {
+            let (floor_corners, deck_corners) = complete_views[i];
+            View {
+                floor_corners,
+                deck_corners: vec![deck_corners],
+            }
         };
         Ok(evenly_spaced_indices(complete_views.len())
             .map(view_of)

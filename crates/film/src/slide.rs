@@ -82,10 +82,12 @@ pub enum SlideTrouble {
         rate: f64,
     },
     /// The film has too few pictures of the slide.
-    #[error("the slide is in only {pictures} pictures: film more pictures a second, in more light")]
+    #[error(
+        "the slide is in only {picture_count} pictures: film more pictures a second, in more light"
+    )]
     TooFewPictures {
         /// Number of pictures.
-        pictures: usize,
+        picture_count: usize,
     },
 }
 
@@ -321,7 +323,7 @@ fn smooth_tilts(observations: &[Observation]) -> Vec<f64> {
 /// Fits the coefficient of sliding friction to the points of a slide.
 fn fit_sliding(points: &[SlidePoint]) -> Result<Figure, SlideTrouble> {
     let too_few_pictures = SlideTrouble::TooFewPictures {
-        pictures: points.len(),
+        picture_count: points.len(),
     };
     if points.len() < MIN_PICTURES {
         return Err(too_few_pictures);

@@ -9,26 +9,26 @@ pub enum Trouble {
     #[error("the film has no pictures")]
     NoPictures,
     /// The pictures differ in size.
-    #[error("picture {number} differs in size from the first one")]
+    #[error("picture {picture_number} differs in size from the first one")]
     SizeDiffers {
         /// Number of the picture, from 1.
-        number: usize,
+        picture_number: usize,
     },
     /// The time of a picture is not later than that of the picture before.
-    #[error("picture {number} is not later than the one before")]
+    #[error("picture {picture_number} is not later than the one before")]
     TimeNotLater {
         /// Number of the picture, from 1.
-        number: usize,
+        picture_number: usize,
     },
     /// A tag appears twice in a picture.
     #[error(
-        "picture {number} shows tag {id} twice, and the program does not guess which of them counts: remove the other"
+        "picture {picture_number} shows tag {id} twice, and the program does not guess which of them counts: remove the other"
     )]
     DuplicateTag {
         /// Id of the tag.
         id: usize,
         /// Number of the picture, from 1.
-        number: usize,
+        picture_number: usize,
     },
     /// No picture shows a tag of the sheet.
     #[error(
@@ -47,23 +47,23 @@ pub enum Trouble {
     },
     /// The deck tag is visible too rarely.
     #[error(
-        "the tag on the robot's deck, or on the horn, is in only {visible_count} of {pictures} pictures; at least \
+        "the tag on the robot's deck, or on the horn, is in only {visible_count} of {picture_count} pictures; at least \
          nine in ten have to show it"
     )]
     DeckTagTooRare {
         /// Number of pictures that show it.
         visible_count: usize,
         /// Number of pictures.
-        pictures: usize,
+        picture_count: usize,
     },
     /// The camera moved, and not all floor tags stayed visible.
     #[error(
-        "the camera moved, and {pictures} pictures do not show all tags of the floor: put it on a \
+        "the camera moved, and {picture_count} pictures do not show all tags of the floor: put it on a \
          tripod, or keep all tags in sight"
     )]
     CameraMoved {
         /// Number of pictures without all floor tags.
-        pictures: usize,
+        picture_count: usize,
     },
     /// No camera could see the floor tags in this arrangement.
     #[error("no camera could see the floor's tags like this: are they flat on the floor?")]

@@ -46,10 +46,11 @@ pub struct MeasuredWalk<'f> {
 #[derive(Debug)]
 pub struct Gaits<'a> {
     robot: &'a Robot,
+    /// Pace as a multiple of each gait's own.
     pace: f64,
     /// The gaits that the user names, in their order.
     named_candidates: Vec<Candidate<'a>>,
-    /// All gaits that are fast enough to be considered; computed on first use.
+    /// All gaits that are fast enough to be considered; computed at the first use.
     all_candidates: OnceCell<Vec<Candidate<'a>>>,
 }
 

@@ -29,6 +29,7 @@ pub struct Report<'a> {
 #[derive(Debug, Serialize)]
 struct FilmLine<'a> {
     film: &'a str,
+    /// Number of pictures in which the robot's place is known.
     pictures: usize,
     camera: CameraLine,
 }
@@ -101,12 +102,15 @@ pub struct PhasePoint {
 /// The largest deviation from the predicted path within a cycle.
 #[derive(Debug, Serialize)]
 struct LargestDeviation {
+    /// Phase of the cycle, 0 to 1.
     phase: f64,
+    /// The component of the movement, one of [`PART_NAMES`].
     part: &'static str,
     /// Measured minus predicted, mm or deg.
     difference: f64,
     /// Measured minus predicted, in standard errors.
     differs: f64,
+    /// True if `differs` is at most [`MAX_AGREEING_ERRORS_OF_ALL`].
     agrees: bool,
 }
 

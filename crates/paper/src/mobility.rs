@@ -30,7 +30,7 @@ struct Mechanism {
     joints: Vec<Joint>,
     /// The numbers of the links that a servo drives.
     driven_links: Vec<usize>,
-    /// Groups of links, each with the message for the case that one of them moves while the driven links are locked.
+    /// Groups of links, each with the message if one of its links moves while the driven links are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 

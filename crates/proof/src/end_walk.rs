@@ -24,7 +24,9 @@ pub struct EndComparison<'a> {
     fixed_leg_limit: i16,
     end: End,
     cells: Cells<'a>,
+    /// Distance from a margin's limit within which decisions may differ, a sine.
     margin_band: f64,
+    /// Distance from the crossing of the crank tips within which decisions may differ.
     crossing_band_mm: f64,
 }
 
@@ -177,8 +179,11 @@ impl<'a> EndComparison<'a> {
 
 /// The values of an end at a pair of positions, in floating point.
 struct EndTruth {
+    /// True if the loop closes.
     is_closed: bool,
+    /// The type-2 margin, a sine.
     type2: f64,
+    /// The left and right type-1 margins, sines.
     type1: [f64; 2],
     /// The distance from the left crank tip to the right one across the end, mm.
     crank_tip_distance_mm: f64,

@@ -129,11 +129,11 @@ fn pictures_of_another_size_and_times_that_do_not_increase_are_refused() {
         .expect("the first picture fits any film");
     assert_eq!(
         film.add(0.1, &picture(65)),
-        Err(Trouble::SizeDiffers { number: 2 })
+        Err(Trouble::SizeDiffers { picture_number: 2 })
     );
     assert_eq!(
         film.add(0.0, &picture(64)),
-        Err(Trouble::TimeNotLater { number: 2 })
+        Err(Trouble::TimeNotLater { picture_number: 2 })
     );
 }
 
@@ -176,7 +176,7 @@ fn a_camera_that_moves_has_to_see_every_tag_of_the_floor() {
         .measure(FULL_SCALE, &gait)
         .expect_err("a tag is hidden");
     assert!(
-        matches!(trouble, Trouble::CameraMoved { pictures } if pictures > 15),
+        matches!(trouble, Trouble::CameraMoved { picture_count } if picture_count > 15),
         "{trouble}"
     );
 }
@@ -384,7 +384,13 @@ fn a_tag_that_appears_twice_in_a_picture_is_refused() {
         .add(0.0, &picture_with_copy(true))
         .expect_err("each tag appears twice");
     assert!(
-        matches!(trouble, Trouble::DuplicateTag { number: 1, .. }),
+        matches!(
+            trouble,
+            Trouble::DuplicateTag {
+                picture_number: 1,
+                ..
+            }
+        ),
         "{trouble}"
     );
 }
