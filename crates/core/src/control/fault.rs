@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_of_pattern_takes_effect_at_once_at_every_frame() {
+    fn any_pattern_replaces_any_other_at_once_at_every_frame() {
         let shown_faults: Vec<Option<Fault>> =
             ALL_FAULTS.into_iter().map(Some).chain([None]).collect();
         for first_fault in &shown_faults {
