@@ -220,17 +220,13 @@ fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f6
     /// Minimum distance of every margin from its limit, a sine.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
-        let [
-            front_left_deg,
-            front_right_deg,
-            rear_left_deg,
-            rear_right_deg,
-        ] = [(); 4].map(|()| round(random_between(rng, 8.0, 80.0)));
+        let [front_left, front_right, rear_left, rear_right] =
+            [(); 4].map(|()| round(random_between(rng, 8.0, 80.0)));
         let neutral = [
-            180.0 - front_left_deg,
-            front_right_deg,
-            360.0 - rear_right_deg,
-            180.0 + rear_left_deg,
+            180.0 - front_left,
+            front_right,
+            360.0 - rear_right,
+            180.0 + rear_left,
         ];
         let solution = lizard.solve(&neutral.into()).ok()?;
         let limits_with_room = Limits {

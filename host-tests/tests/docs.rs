@@ -24,12 +24,10 @@ fn paths_in(folder: impl AsRef<Path>) -> impl Iterator<Item = PathBuf> {
 
 /// Returns the text between the first `start` and the next `end`.
 fn text_between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
-    let (_, rest) = text
+    let pieces = text
         .split_once(start)
-        .unwrap_or_else(|| panic!("no {start:?}"));
-    let (between, _) = rest
-        .split_once(end)
-        .unwrap_or_else(|| panic!("no {end:?} after {start:?}"));
+        .and_then(|(_, rest)| rest.split_once(end));
+    let (between, _) = pieces.unwrap_or_else(|| panic!("no {start:?} with {end:?} after it"));
     between
 }
 

@@ -79,7 +79,7 @@ fn random_safe_pose(rng: &mut Rng) -> [f64; 4] {
 }
 
 /// Returns the command for a pose whose angles (deg) are in the chassis frame, not from neutral.
-fn absolute_pose_command(angles: [f64; 4]) -> String {
+fn pose_line(angles: [f64; 4]) -> String {
     let [a1, a2, a3, a4] = angles;
     format!("pose {a1} {a2} {a3} {a4}")
 }
@@ -92,7 +92,7 @@ fn a_pose_is_accepted_exactly_if_floating_point_finds_it_safe() {
         let (mut accepted_count, mut refused_counts) = (0, [0; 2]);
         for _ in 0..400 {
             let angles = random_pose_within(&mut rng, max_deg);
-            let answer = bench.say(&absolute_pose_command(angles));
+            let answer = bench.say(&pose_line(angles));
             if is_safe(angles, &limits_with_tolerance(1.0)) && is_within_travel(angles) {
                 assert!(answer.starts_with("ok pose"), "{angles:?}: {answer}");
                 accepted_count += 1;
@@ -193,7 +193,7 @@ fn a_refusal_names_the_violated_condition_and_its_value_if_the_guard_knows_it() 
     let (mut printed_count, mut unknown_count) = (0, 0);
     for _ in 0..400 {
         let angles = random_pose_within(&mut rng, 70.0);
-        let answer = bench.say(&absolute_pose_command(angles));
+        let answer = bench.say(&pose_line(angles));
         if answer.starts_with("ok") || answer.starts_with("err 3") {
             continue;
         }
@@ -267,7 +267,7 @@ fn no_frame_violates_a_limit_under_random_commands() {
             let line = if rng.u64(..3) == 0 {
                 rng.choice(&lines).expect("every robot has a gait").clone()
             } else {
-                absolute_pose_command(random_safe_pose(&mut rng))
+                pose_line(random_safe_pose(&mut rng))
             };
             assert!(bench.say(&line).starts_with("ok "), "{line}");
             frames.extend(bench.run_for_frames(rng.u64(..2 * FRAMES_PER_SECOND)));
@@ -349,11 +349,7 @@ fn assert_every_safe_pose_is_reached() {
     let mut bench = boot_standing(Fidelity::DataSheet);
     for _ in 0..20 {
         let pose = random_safe_pose(&mut rng);
-        assert!(
-            bench
-                .say(&absolute_pose_command(pose))
-                .starts_with("ok pose")
-        );
+        assert!(bench.say(&pose_line(pose)).starts_with("ok pose"));
         bench.run_ms(5000);
         let status = Status::read(&mut bench);
         assert_eq!(
@@ -378,13 +374,9 @@ fn the_robot_stops_on_an_unsafe_path_before_it_violates_a_limit() {
     };
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         let mut bench = boot_standing(*fidelity);
-        assert!(
-            bench
-                .say(&absolute_pose_command(from))
-                .starts_with("ok pose")
-        );
+        assert!(bench.say(&pose_line(from)).starts_with("ok pose"));
         bench.run_ms(5000);
-        assert!(bench.say(&absolute_pose_command(to)).starts_with("ok pose"));
+        assert!(bench.say(&pose_line(to)).starts_with("ok pose"));
         let note = bench.next_line(5000).expect("the robot prints a note");
         assert!(note.starts_with("# held in the last safe pose: "), "{note}");
         assert_eq!(Status::read(&mut bench).text("guard"), "held");

@@ -170,10 +170,10 @@ pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
 }
 
 /// Returns the 95 % Wilson confidence interval of a rate: of 20 such intervals, about 19 contain the true rate.
-pub fn wilson_interval(caught_count: usize, tried_count: usize) -> (f64, f64) {
+pub fn wilson_interval(caught: usize, tried: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
-    let n = tried_count.max(1) as f64;
-    let rate = caught_count as f64 / n;
+    let n = tried.max(1) as f64;
+    let rate = caught as f64 / n;
     let middle = rate + Z * Z / (2.0 * n);
     let half_width = Z * (rate * (1.0 - rate) / n + Z * Z / (4.0 * n * n)).sqrt();
     let scale = 1.0 + Z * Z / n;

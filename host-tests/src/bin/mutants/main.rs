@@ -90,12 +90,7 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
     // code that only produces text.
     let mut tally = [[0; 2]; 2];
     for mutant in fresh::shuffle(mutants, seed) {
-        if tally
-            .iter()
-            .map(|[_, tried_count]| tried_count)
-            .sum::<usize>()
-            == count
-        {
+        if tally.iter().map(|[_, tried]| tried).sum::<usize>() == count {
             break;
         }
         let outcome = match scratch.judge(&mutant)? {
@@ -108,25 +103,22 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
         };
         println!("{}, {}: {outcome}", mutant.file, mutant.description);
         let kind_index = usize::from(!fresh::affects_motion(&mutant.file));
-        let [caught_count, tried_count] = &mut tally[kind_index];
-        *caught_count += usize::from(outcome != "MISSED");
-        *tried_count += 1;
+        let [caught, tried] = &mut tally[kind_index];
+        *caught += usize::from(outcome != "MISSED");
+        *tried += 1;
     }
-    for ([caught_count, tried_count], code_kind) in tally
+    for ([caught, tried], code_kind) in tally
         .into_iter()
         .zip(["that move a servo or a saved value", "in text"])
     {
-        let (min, max) = fresh::wilson_interval(caught_count, tried_count);
+        let (min, max) = fresh::wilson_interval(caught, tried);
         println!(
-            "mistakes {code_kind}: {caught_count} of {tried_count} caught, {:.1} to {:.1} % (Wilson, 95 %)",
+            "mistakes {code_kind}: {caught} of {tried} caught, {:.1} to {:.1} % (Wilson, 95 %)",
             100.0 * min,
             100.0 * max
         );
     }
-    Ok(tally
-        .iter()
-        .map(|[caught_count, tried_count]| tried_count - caught_count)
-        .sum())
+    Ok(tally.iter().map(|[caught, tried]| tried - caught).sum())
 }
 
 /// Tries the listed mistakes. Returns the number of mistakes that no test notices.
