@@ -639,10 +639,7 @@ export class Session {
     this.listener.onFrame(frame, widths, seconds);
   }
 
-  /**
-   * Returns the displacement in the last complete cycle of the gait; null without a gait that moves or a complete
-   * cycle.
-   */
+  /** Returns the displacement in the last complete cycle; null without a gait that moves or a complete cycle. */
   measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
     return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.pace) : null;

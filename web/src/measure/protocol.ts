@@ -13,8 +13,7 @@ const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minAheadShare: 0.7 };
 const RETURN_GAIT = { minForwardMm: 3, maxTurnDeg: 2 };
 /** Distance from the middle, mm, beyond which the robot first returns if the next walk would leave the sheet. */
 const RETURN_DISTANCE_MM = 80;
-/** Outward movement near the edge of the sheet that ends a walk, mm. It must exceed the body's swing within a cycle.
- */
+/** Outward movement near the edge of the sheet that ends a walk, mm. It must exceed the body's swing within a cycle. */
 const MAX_OUTWARD_MM = 20;
 /** Time for which the robot may walk without being detected by the camera, s. */
 const MAX_UNSEEN_S = 2;
@@ -175,8 +174,9 @@ export class Protocol {
     return this.lastSighting && this.stage.now() - this.lastSighting.seconds < MAX_UNSEEN_S ? this.lastSighting.offset : null;
   }
 
-  /** Brings the robot back to the middle if it is near the edge of the sheet, by a gait or else by hand. If only the next
-   * walk, of `forwardMm`, would leave the sheet, the robot returns only if a gait can take it to the middle.
+  /**
+   * Brings the robot back to the middle if it is near the edge of the sheet, by a gait or else by hand. If only the
+   * next walk, of `forwardMm`, would leave the sheet, the robot returns only if a gait can take it to the middle.
    */
   private async goBack(forwardMm: number): Promise<void> {
     for (let attempt = 0; ; attempt++) {

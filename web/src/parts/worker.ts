@@ -42,10 +42,7 @@ const api = {
   /** Returns the places of the shown parts' mounts; null without parts, or if a loop does not close. */
   pose: (angles: number[], lags: number[]) => shownParts?.pose(angles, lags) ?? null,
 
-  /**
-   * Proves that the parts of a robot fit; returns the least distance between two parts, mm, or null if no pair was
-   * checked.
-   */
+  /** Proves that the parts of a robot fit; returns the least distance between two, mm; null if no pair was checked. */
   fit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
 
   /**

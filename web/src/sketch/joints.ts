@@ -72,8 +72,9 @@ export function bars({ shafts, tips, points, sliders, legs }: Scene): Bar[] {
 
 /** Returns the joints that can be dragged; `lengthOf` returns a length in robot.toml, mm, by its key. */
 export function joints({ shafts, tips, points, sliders, legs }: Scene, lengthOf: (key: string) => number): Joint[] {
-  /** Lengthens each half of a slider by half the change of the distance between its arm tips, so that the slider keeps its
-   * travel.
+  /**
+   * Lengthens each half of a slider by half the change of the distance between its arm tips, so that the slider keeps
+   * its travel.
    */
   const halfEdits = (side: (typeof SIDES)[number], change: number): Edits => [
     [linkKey(side.rearHalf), round(lengthOf(linkKey(side.rearHalf)) + change / 2)],

@@ -40,7 +40,8 @@ export class BoardRobot {
     this.troubles.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => this.showRobot(knownRobot) });
   }
 
-  /** Finds the robot with this hash among those that the user has put aside and those that come with the page; null if
+  /**
+   * Finds the robot with this hash among those that the user has put aside and those that come with the page; null if
    * none has it.
    */
   private async findByHash(hash: string): Promise<KnownRobot | null> {

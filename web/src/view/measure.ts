@@ -75,9 +75,7 @@ export class MeasureView {
   /** The gaits that the user has ticked (true) or unticked (false). */
   private readonly userTicks = new Map<string, boolean>();
 
-  /**
-   * `isSetupOpen` returns true while the setup is open: the robot must not be driven then, since hands may be in it.
-   */
+  /** `isSetupOpen` returns true while the setup is open: nothing may drive the robot then, since hands may be in it. */
   constructor(
     private readonly session: Session,
     private readonly predictor: Predictor,
@@ -321,9 +319,7 @@ export class MeasureView {
     this.isBeingPutBack = false;
   }
 
-  /**
-   * Measures walks in the film. Shows the results, the given problems and the reasons why walks could not be measured.
-   */
+  /** Measures walks in the film. Shows the results, the given problems and the reasons why walks are not measured. */
   private async measureWalks(walks: AskedWalk[], speed = this.values.speed ?? 100, problems: string[] = []): Promise<void> {
     this.task = 'compute';
     this.setMessage('Measuring…');

@@ -7,7 +7,8 @@ export interface Range {
   step: number;
 }
 
-/** Sets an input's range. `onNumber` is called with each valid number that is typed, and with null when the input is
+/**
+ * Sets an input's range. `onNumber` is called with each valid number that is typed, and with null when the input is
  * emptied. When the user leaves the input with an invalid number, the last valid one is restored.
  */
 export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Range, onNumber: (value: number | null) => void): void {

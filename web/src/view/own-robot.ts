@@ -17,10 +17,7 @@ export class OwnRobot {
     this.updateList();
   }
 
-  /**
-   * Puts the user's previous robot aside and offers to restore it, if the user had changed it and another robot has
-   * replaced it.
-   */
+  /** Puts the previous robot aside and offers to restore it, if it was changed and another robot has replaced it. */
   putAside(previous: SavedChanges | null): void {
     if (!previous || previous.toml === previous.original || previous.toml === this.session.toml) return;
     this.storeAside([previous, ...browserStorage.getPutAside().filter(({ toml }) => toml !== previous.toml)]);

@@ -98,10 +98,7 @@ export class PathView {
     this.trial.predict();
   }
 
-  /**
-   * Converts a point from the plane to the picture or back. In the picture, outward is up for the head and down for the
-   * tail.
-   */
+  /** Converts a point from the plane to the picture or back. Outward is up for the head and down for the tail. */
   private toPicture([x, y]: Point): Point {
     return [x, this.gesture.end === 'head' ? -y : y];
   }

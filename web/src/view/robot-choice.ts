@@ -34,7 +34,8 @@ export class RobotChoice {
     return index < 0 ? null : index;
   }
 
-  /** Loads the list of the robots that come with the page. Throws an error with a message for the user if it is missing.
+  /**
+   * Loads the list of the robots that come with the page. Throws an error with a message for the user if it is missing.
    */
   static async load(): Promise<RobotChoice> {
     const { all, tests } = await files.robots();

@@ -142,10 +142,7 @@ export class Setup implements StepTools {
     if (!this.dialog.hidden && !this.isBusy) this.redraw();
   }
 
-  /**
-   * Drops the current action. Finished steps stay finished, unless the robot has lost its unsaved settings
-   * (`areSettingsLost`).
-   */
+  /** Drops the current action. Finished steps stay finished, unless unsaved settings are lost (`areSettingsLost`). */
   private dropAction(areSettingsLost = true): void {
     this.actionCount += 1;
     this.setBusy(false);

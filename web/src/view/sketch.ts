@@ -99,10 +99,7 @@ export class Sketch {
     if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (printable, message) => this.slider.markPrintable(printable, message));
   }
 
-  /**
-   * Draws the robot; if `fitsView`, also fits the view to it. During a drag, the view and the elements of the joints
-   * stay.
-   */
+  /** Draws the robot; if `fitsView`, also fits the view to it. A drag keeps the view and the elements of the joints. */
   private draw(scene: Scene, fitsView: boolean): void {
     const toPicture = ([x, y]: Point): Point => [x, -y];
     const lengths = new Map(this.session.description.lengths.map((length) => [length.key, length]));
