@@ -28,7 +28,7 @@ export async function pack(toml: string): Promise<string> {
  * Returns a robot.toml without its comments, which would be most of a link's characters. Returns the text unchanged if
  * it would parse to other values without them, for example because of a # in a multi-line string.
  */
-async function withoutComments(toml: string): Promise<string> {
+async function stripComments(toml: string): Promise<string> {
   const { parse } = await import('smol-toml');
   const shortText = toml.replaceAll(/^[ \t]*#.*\n/gm, '').replaceAll(/[ \t]+#[^"'\n]*$/gm, '');
   return JSON.stringify(parse(shortText)) === JSON.stringify(parse(toml)) ? shortText : toml;
@@ -36,7 +36,7 @@ async function withoutComments(toml: string): Promise<string> {
 
 /** Returns a link that opens this page with a robot, short enough for a chat or a QR code. */
 export async function linkTo(toml: string): Promise<string> {
-  return `${location.href.split('#')[0]}#robot=${await pack(await withoutComments(toml))}`;
+  return `${location.href.split('#')[0]}#robot=${await pack(await stripComments(toml))}`;
 }
 
 /** Reads the robot.toml from the parameter `robot` of an address. Throws an error with a message for the user. */

@@ -9,7 +9,7 @@ import { browserStorage } from './browser-storage';
 import { BluetoothLink, bluetoothProblem, IPHONE_ADVICE } from './link/bluetooth-link';
 import type { Link } from './link/link';
 import { hasSerial, NO_SERIAL_MESSAGE, PortLink } from './link/port-link';
-import { keepOffline } from './offline';
+import { installServiceWorker } from './offline';
 import { Predictor } from './predictor';
 import { canLag, load } from './robot';
 import { Session } from './session';
@@ -170,8 +170,8 @@ async function start(): Promise<void> {
   follow([session.state.banner, predictor.predictions], () => session.banner && startIntroWalk());
 
   session.followRobot(({ words }) => {
-    const unknown = unknownWords([...drive.commands], words);
-    if (unknown.length > 0) troubles.setMessage('page', `The core does not know these words of the page: ${unknown.join(', ')}.`);
+    const missingWords = unknownWords([...drive.commands], words);
+    if (missingWords.length > 0) troubles.setMessage('page', `The core does not know these words of the page: ${missingWords.join(', ')}.`);
   });
   effect(() => {
     const { link, banner, description, isReal } = session;
@@ -288,7 +288,7 @@ async function start(): Promise<void> {
   });
   window.lizard = session;
   // The service worker starts only after everything that the page needs first is loaded.
-  void keepOffline((loadNewer) => {
+  void installServiceWorker((loadNewer) => {
     element('fresh').hidden = false;
     element('fresh-take').onclick = loadNewer;
   });
@@ -337,6 +337,6 @@ function boardText(name: string, banner: BoardBanner | undefined, hash: string):
 
 openRoom(location.hash);
 start().catch((error: unknown) => {
-  element('where').textContent = 'The page cannot begin.';
+  element('where').textContent = 'The page cannot start.';
   troubles.setMessage('page', messageOf(error));
 });

@@ -4,7 +4,7 @@
 import { messageOf } from './trouble';
 
 /** Stores the page on this machine. Calls `onUpdate` with a function that loads a newer version once one is ready. */
-export async function keepOffline(onUpdate: (load: () => void) => void): Promise<void> {
+export async function installServiceWorker(onUpdate: (load: () => void) => void): Promise<void> {
   // A browser has service workers only over https and on localhost; otherwise the page needs the network.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const { serviceWorker } = navigator;

@@ -221,7 +221,7 @@ export class Session {
   /** The firmware and the robot as one image of the flash. */
   get image(): Uint8Array {
     const { firmware, robotSection, description } = this;
-    if (!firmware) throw new Error('the firmware has not come yet');
+    if (!firmware) throw new Error('the firmware is not loaded yet');
     const image = new Uint8Array(description.start + robotSection.length).fill(0xff);
     image.set(firmware);
     image.set(robotSection, description.start);
@@ -334,7 +334,7 @@ export class Session {
       message = `The board is an Arduino ${model}, an ATmega328P by its boot loader, and this firmware is not on it.`;
       this.hasBootLoader = true;
     } catch (error) {
-      message = `The board does not speak as this firmware does: ${messageOf(error)}.`;
+      message = `The board does not answer as this firmware does: ${messageOf(error)}.`;
     }
     if (this.link !== link) return;
     this.state.banner.value = null;
@@ -358,16 +358,16 @@ export class Session {
 
   /** True if a real board is walking. */
   get isBoardWalking(): boolean {
-    return this.isReal && this.makesWalk(this.gait);
+    return this.isReal && this.startsWalking(this.gait);
   }
 
   /** True while a routine runs; a real board may have routines that the page's robot lacks. */
   private get isRoutineRunning(): boolean {
-    return this.makesWalk(this.gait) && !this.description.gaits.some(({ command }) => command === this.gait);
+    return this.startsWalking(this.gait) && !this.description.gaits.some(({ command }) => command === this.gait);
   }
 
-  /** True if a line makes the robot walk. */
-  private makesWalk(line: string): boolean {
+  /** True if the robot walks after this line; an activity counts as the line that starts it. */
+  private startsWalking(line: string): boolean {
     const [word] = line.split(' ');
     // A board with another robot may have gaits that the page's robot lacks. A count may follow the gait's name.
     const knownGait = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
@@ -486,7 +486,7 @@ export class Session {
     const { deadman } = this;
     const command = line.trim().toLowerCase();
     if (command === WORDS.stop) this.stopCount += 1;
-    const isDrive = this.isReal && this.makesWalk(command);
+    const isDrive = this.isReal && this.startsWalking(command);
     if (isDrive) this.pendingDriveCount += 1;
     try {
       if (isDrive) {
@@ -534,7 +534,7 @@ export class Session {
     if (status.pace !== null) this.setPace(status.pace);
     this.listener.onTrouble('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
     const gait = status.gait.replaceAll('-', ' ');
-    // `center` is a pose for the robot, and a routine that rests is still under way.
+    // The robot reports `center` as a pose, and the rest of a routine as `rest`.
     const isSameActivity = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === null);
     // The page has missed the start of this activity, for example because its link was cut.
     if (gait !== this.gait && !isSameActivity) this.setGait(gait);

@@ -11,8 +11,8 @@ export type { BestGait };
 /** Number of gaits between two reports of the best gait so far: one population of the search. */
 const GAITS_PER_REPORT = 20;
 /**
- * Number of random robots on which gaits are compared, for a report during the search and for the final one, there as
- * in `lizard tune`.
+ * Number of random robots on which gaits are compared, for a report during the search, and for the final one, as in
+ * `lizard tune`.
  */
 const ROBOT_COUNT = { progress: 20, final: 200 };
 

@@ -1,6 +1,6 @@
 // The protocol of a measurement: drives gaits one after another in front of a camera, keeps the robot near the sheet of
 // tags, and records the time of each walk. Any other activity of the robot, such as `stop` or another gait, ends it; so
-// does a lost link.
+// does the loss of the link.
 import { DONE_LINE, GAITS, WORDS } from '../words';
 import type { OffsetToMiddle } from './tag-tracker';
 
@@ -111,8 +111,8 @@ export class Protocol {
         await this.goBack(cyclesLeft * forward);
         await this.wait(pause);
         stage.say(`${i + 1} of ${gaits.length}: ${command}, ${cyclesLeft} cycles`);
-        const [begin, end] = await this.walk(command, cyclesLeft, (during) => this.walks.push({ gait: command, during }));
-        cyclesLeft -= Math.max(MIN_CYCLES, Math.floor(((end - begin) * speed) / 100 / period));
+        const [start, end] = await this.walk(command, cyclesLeft, (during) => this.walks.push({ gait: command, during }));
+        cyclesLeft -= Math.max(MIN_CYCLES, Math.floor(((end - start) * speed) / 100 / period));
       }
     }
     await this.wait(pause);
@@ -212,20 +212,20 @@ export class Protocol {
     // The promise may reject before it is awaited.
     walkEnd.catch(() => {});
     this.activeWalk = activeWalk;
-    const begin = stage.now();
+    const start = stage.now();
     await this.ask(`${gait} ${cycles}`);
     activeWalk.nearestMm = this.lastOffset ? distance(this.lastOffset) : Infinity;
     void this.watch(activeWalk);
     try {
       await walkEnd;
     } finally {
-      record([begin, activeWalk.endSeconds ?? begin]);
+      record([start, activeWalk.endSeconds ?? start]);
     }
     if (activeWalk.isCut) {
       await this.ask(GAITS.stand);
       this.activeWalk = null;
     }
-    return [begin, activeWalk.endSeconds ?? begin];
+    return [start, activeWalk.endSeconds ?? start];
   }
 
   /** Ends a walk when the robot is no longer detected. */
@@ -260,7 +260,7 @@ export class Protocol {
   private async ask(line: string): Promise<void> {
     this.throwIfEnded();
     this.lastSent = line;
-    if (!(await this.stage.ask(line))) this.stop(`the robot did not take "${line}"`);
+    if (!(await this.stage.ask(line))) this.stop(`the robot did not accept "${line}"`);
     this.throwIfEnded();
   }
 }

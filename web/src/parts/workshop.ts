@@ -67,7 +67,7 @@ export class Solids {
 
   /**
    * Returns the places of all mounts at the servos' `angles` and the legs' `lags`, deg; null if a loop does not close,
-   * or if the worker still computes an earlier pose.
+   * or if the worker is still computing an earlier pose.
    */
   async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
     if (this.isBusy) return null;

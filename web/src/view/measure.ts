@@ -156,7 +156,7 @@ export class MeasureView {
   updateNumbers(): void {
     if (this.room.hidden || this.view.hidden) return;
     const { picturesPerSecond: rate, hiddenTagsMessage, searchMs } = this.tracker;
-    setText(element('measure-rate'), `${rate.toFixed(0)} pictures a second, each looked at in ${searchMs.toFixed(0)} ms`);
+    setText(element('measure-rate'), `${rate.toFixed(0)} pictures per second, each searched in ${searchMs.toFixed(0)} ms`);
     setText(element('measure-seen'), hiddenTagsMessage || 'All five tags are seen.');
     element('measure-seen').classList.toggle('refusal', hiddenTagsMessage !== '');
   }

@@ -51,8 +51,8 @@ export class RoutinesView {
     this.panel.addEventListener('toggle', () => this.show());
     this.routineList.addEventListener('change', () => this.show());
     onClick('record', () => this.toggleRecording());
-    onClick('keep', () => void this.keepRecorded());
-    onClick('drop', () => this.offerToKeep([]));
+    onClick('keep', () => void this.storeRecorded());
+    onClick('drop', () => this.offerToStore([]));
     onClick('add', () => void this.addStep());
     onClick('undo', () => void this.text.undo());
     onClick('start', () => void this.startRoutine());
@@ -107,7 +107,7 @@ export class RoutinesView {
     const button = element('routine-record');
     button.setAttribute('aria-pressed', String(!steps));
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
-    this.offerToKeep(steps ?? []);
+    this.offerToStore(steps ?? []);
     if (steps?.length === 0) this.setMessage('Nothing is recorded: the robot has not walked.');
     this.showRecording();
   }
@@ -118,7 +118,7 @@ export class RoutinesView {
   }
 
   /** Offers to store recorded steps under a name; hides the offer if there are no steps. */
-  private offerToKeep(steps: string[]): void {
+  private offerToStore(steps: string[]): void {
     this.recordedSteps = steps;
     element('routine-recorded').hidden = steps.length === 0;
     this.setMessage(steps.length === 0 ? '' : `Recorded: ${steps.join(', ')}`);
@@ -129,14 +129,14 @@ export class RoutinesView {
     this.nameInput.select();
   }
 
-  private async keepRecorded(): Promise<void> {
+  private async storeRecorded(): Promise<void> {
     const name = this.nameInput.value.trim().replaceAll(' ', '-');
     const { draft } = this.text;
     if (Robot.routines(draft).some((routine) => routine.name === name)) return this.setMessage(`${name} is there already: give it another name.`);
     const { text, refusal } = Robot.putSteps(draft, name, this.recordedSteps);
     // A routine with an invalid step is stored anyway: the step's block shows the error.
     if (refusal && refusal.key !== `routine.${name}.steps`) return this.setMessage(refusal.refused);
-    this.offerToKeep([]);
+    this.offerToStore([]);
     await this.text.loadText(text);
     this.routineList.value = name;
     this.show();

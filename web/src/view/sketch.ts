@@ -28,7 +28,7 @@ export class Sketch {
   private readonly jointGroup = this.picture.appendChild(makeSvg('g', {}));
   /** Tries other lengths in a worker. */
   private readonly lengthsQuestion = createRobotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
-  private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.askRobot());
+  private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.requestDrawing());
   /** The dragged joint, as at the start of the drag; null if none is dragged. */
   private draggedJoint: Joint | null = null;
   /** True from the end of a drag until the answer for its last position. */
@@ -45,11 +45,11 @@ export class Sketch {
   private showRobot(lengths: Length[]): void {
     this.draggedJoint = null;
     this.slider.showRobot(lengths);
-    this.askRobot();
+    this.requestDrawing();
   }
 
   /** Requests a drawing of the session's robot, and the range of the slider's length. */
-  private askRobot(): void {
+  private requestDrawing(): void {
     this.lengthsQuestion.ask({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
