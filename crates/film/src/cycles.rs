@@ -1,10 +1,10 @@
 //! The cycles of a path.
 //!
 //! A distance per cycle means little without the phase at which a cycle starts: the body sways, so the forward
-//! direction depends on the phase. And a clock that is off by half a percent makes every cycle too long by as much. So
-//! both are fitted (`clock.rs`). Since pictures are some time apart, cycles are measured from one calm phase, at which
-//! the robot moves evenly, to the next. The displacement from the start of a cycle to its calm phase then converts the
-//! result to one that is measured from the start.
+//! direction depends on the phase. Also, a clock that is off by half a percent makes every cycle too long by as much.
+//! So both are fitted (`clock.rs`). Since pictures are some time apart, cycles are measured from one calm phase, at
+//! which the robot moves evenly, to the next. The displacement from the start of a cycle to its calm phase then
+//! converts the result to one that is measured from the start.
 
 use lizard_contact::{Place, Travel};
 
@@ -59,33 +59,37 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Tro
     let first = ((begin - start.value) / period.value - calm_phase).ceil() as i64;
     let times = (first..).map(|i| start.value + (i as f64 + calm_phase) * period.value);
     let half_window = HALF_WINDOW * gait.period;
-    let calm_places: Vec<(f64, Place)> = times
+    let calm_point_at = |seconds: f64| {
+        let place = path::smoothed_place_at(path, seconds, half_window)?;
+        Some(PathPoint { seconds, place })
+    };
+    let calm_points: Vec<PathPoint> = times
         .take_while(|&time| time <= end)
-        .map(|time| Some((time, path::smoothed_place_at(path, time, half_window)?)))
+        .map(calm_point_at)
         // The first calm phase may have too few pictures before it.
         .skip_while(Option::is_none)
-        .map_while(|place| place)
+        .map_while(|point| point)
         .collect();
-    if calm_places.len() < 3 {
+    if calm_points.len() < 3 {
         return Err(too_short_error(end - begin, gait));
     }
-    let start_to_calm = displacement_to_calm(walk, &calm_places, calm_phase, period.value, gait)
+    let start_to_calm = displacement_to_calm(walk, &calm_points, calm_phase, period.value, gait)
         .unwrap_or_else(|| gait.place_at(calm_phase));
     let calm_to_start = path::inverse(start_to_calm);
-    let travel_of = |pair: &[(f64, Place)]| {
-        let cycle = path::place_of_travel(pair[1].1.travel_from(pair[0].1));
+    let travel_of = |pair: &[PathPoint]| {
+        let cycle = path::place_of_travel(pair[1].place.travel_from(pair[0].place));
         path::compose(path::compose(start_to_calm, cycle), calm_to_start).travel()
     };
-    let start_of = |(time, place): &(f64, Place)| PathPoint {
-        seconds: time - calm_phase * period.value,
-        place: path::compose(*place, calm_to_start),
+    let start_of = |point: &PathPoint| PathPoint {
+        seconds: point.seconds - calm_phase * period.value,
+        place: path::compose(point.place, calm_to_start),
     };
     Ok(Cycles {
         period,
         calm_rate: gait.rate_at(calm_phase),
-        calm_times: calm_places.iter().map(|(time, _)| *time).collect(),
-        travels: calm_places.windows(2).map(travel_of).collect(),
-        starts: calm_places.iter().map(start_of).collect(),
+        calm_times: calm_points.iter().map(|point| point.seconds).collect(),
+        travels: calm_points.windows(2).map(travel_of).collect(),
+        starts: calm_points.iter().map(start_of).collect(),
         start_error: start.error,
     })
 }
@@ -125,16 +129,17 @@ fn too_short_error(seconds: f64, gait: &Gait) -> Trouble {
 /// its start.
 fn displacement_to_calm(
     path: &[PathPoint],
-    calm_places: &[(f64, Place)],
+    calm_points: &[PathPoint],
     calm_phase: f64,
     period: f64,
     gait: &Gait,
 ) -> Option<Place> {
-    let displacements: Vec<Place> = calm_places
+    let displacements: Vec<Place> = calm_points
         .iter()
-        .filter_map(|(time, place)| {
-            let start = place_at_start(path, time - calm_phase * period, period, gait)?;
-            Some(path::place_of_travel(place.travel_from(start)))
+        .filter_map(|point| {
+            let start_seconds = point.seconds - calm_phase * period;
+            let start = place_at_start(path, start_seconds, period, gait)?;
+            Some(path::place_of_travel(point.place.travel_from(start)))
         })
         .collect();
     let mean_coordinate = |coordinate: fn(&Place) -> f64| {

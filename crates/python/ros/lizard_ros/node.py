@@ -13,7 +13,7 @@ from lizard.ros import JOINTS, Driver, joint_values
 
 
 class Lizard(Node):
-    """A robot at the serial port `port`, or a simulated one; its robot.toml is `robot`."""
+    """A robot at a serial port (parameter `port`), or a simulated one; the parameter `robot` is its robot.toml."""
 
     def __init__(self) -> None:
         super().__init__("lizard")
