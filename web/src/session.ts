@@ -90,7 +90,7 @@ export class Session {
   private deadman!: Deadman;
   /** Number of unanswered lines that make the robot walk. */
   private pendingDriveCount = 0;
-  /** Number of calls of `ask` with `stop` so far. */
+  /** Number of calls of `ask` with `stop` so far; tells a waiting drive command that it is outdated. */
   private stopCount = 0;
   /** The time at which the robot's last line arrived, on the page's clock, ms. */
   private lastLineAt = performance.now();
@@ -319,7 +319,7 @@ export class Session {
     return Promise.race([bannerPromise, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
   }
 
-  /** Resolves to true if this firmware answers `status`; not every port resets its board and so brings a banner. */
+  /** Resolves to true if this firmware answers `status`. Without a reset by the port there is no banner to tell. */
   private async answersStatus(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWER_TIMEOUT_MS).catch(() => null);
     return answer?.ok ?? false;

@@ -48,7 +48,7 @@ export class FitView {
     session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
 
-  /** Checks the parts of the session's robot, whose lengths these are. */
+  /** Shows the session's robot, which has these lengths, and checks its parts if the lengths have changed. */
   showRobot(lengths: Length[]): void {
     const robotLengths: Lengths = new Map(lengths.map(({ key, value }) => [key, value]));
     this.rangeRequest = null;

@@ -15,9 +15,9 @@ export class RobotText {
   private readonly textBox = element<HTMLTextAreaElement>('robot-text');
   private readonly undoButton = element<HTMLButtonElement>('robot-undo');
   private readonly redoButton = element<HTMLButtonElement>('robot-redo');
-  /** The robot.tomls before the last changes, the latest at the end. */
+  /** The texts of robot.toml before the last changes, the latest at the end. */
   private undoStack: string[] = [];
-  /** The robot.tomls that were undone, the latest at the end. */
+  /** The texts of robot.toml that were undone, the latest at the end. */
   private redoStack: string[] = [];
   /** The session's robot.toml that was shown last; empty before the first. */
   private shownToml = '';
