@@ -8,15 +8,15 @@ const { LatestQuestion } = await importSource('latest-question.ts');
 
 /** A worker that answers when a test says so. */
 class FakeWorker {
-  askedQuestions = [];
+  receivedQuestions = [];
 
   ask = (question) => {
-    this.askedQuestions.push(question);
+    this.receivedQuestions.push(question);
     return new Promise((resolve) => (this.resolveAnswer = resolve));
   };
 
   async answer() {
-    this.resolveAnswer(`answer to ${this.askedQuestions.at(-1)}`);
+    this.resolveAnswer(`answer to ${this.receivedQuestions.at(-1)}`);
     await new Promise((resolve) => setTimeout(resolve));
   }
 }
@@ -26,9 +26,9 @@ test('of the questions asked while the worker is busy only the last is answered'
   const answers = [];
   const questions = new LatestQuestion(worker.ask, (answer) => answers.push(answer));
   for (const question of ['first', 'second', 'third']) questions.ask(question);
-  assert.deepEqual(worker.askedQuestions, ['first']);
+  assert.deepEqual(worker.receivedQuestions, ['first']);
   await worker.answer();
-  assert.deepEqual(worker.askedQuestions, ['first', 'third']);
+  assert.deepEqual(worker.receivedQuestions, ['first', 'third']);
   await worker.answer();
   assert.deepEqual(answers, ['answer to first', 'answer to third']);
 });
@@ -43,6 +43,6 @@ test('a question asked when an answer arrives replaces the waiting one, or is an
   questions.ask('first');
   questions.ask('older');
   for (let n = 0; n < 2; n++) await worker.answer();
-  assert.deepEqual(answers.at(-1), 'answer to newest', `${worker.askedQuestions}`);
-  assert.equal(worker.askedQuestions.at(-1), 'newest', 'and nothing older is asked after it');
+  assert.deepEqual(answers.at(-1), 'answer to newest', `${worker.receivedQuestions}`);
+  assert.equal(worker.receivedQuestions.at(-1), 'newest', 'and nothing older is asked after it');
 });

@@ -48,7 +48,7 @@ const RULES: &[FieldRule] = &[
         "frames_awake",
         Coarse(|frames| frames.div_ceil(5)),
     ),
-    ("Led", "frames", Skip),
+    ("LedPattern", "frames", Skip),
     ("Safety", "is_lit", Skip),
     ("Safety", "handled_late_edges", Skip),
     // The observer measures the time without a line, too, while `deadman` is set.

@@ -29,12 +29,12 @@ pub enum MujocoError {
     #[error("tools/physics/judge.py says {0}")]
     UnknownAnswer(String),
     /// The judge could not simulate a walk, or MuJoCo warned during it.
-    #[error("{file}: {trouble}")]
+    #[error("{file}: {problem}")]
     FailedWalk {
         /// Robot, gait and case.
         file: String,
         /// The judge's message.
-        trouble: String,
+        problem: String,
     },
     /// A part of the robot cannot be built.
     #[error(transparent)]
@@ -167,7 +167,7 @@ impl RunningJudge {
             let Some(displacement) = answer.way else {
                 return Err(MujocoError::FailedWalk {
                     file: answer.file,
-                    trouble: answer.trouble.unwrap_or_default(),
+                    problem: answer.trouble.unwrap_or_default(),
                 });
             };
             displacements.insert(answer.file, displacement.into());

@@ -119,7 +119,7 @@ impl Observer {
         }
     }
 
-    /// True if a servo must wake in its rest pose after a restart now. Since the last whole pulse, the supply has been
+    /// True if a servo must wake in its rest pose after a restart now. Since the last complete pulse, the supply has been
     /// good and main has been undisturbed for long enough to save the pose.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
         let last_whole_start = self.servos[servo].last_whole_start;

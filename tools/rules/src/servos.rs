@@ -92,7 +92,7 @@ impl Permission {
     }
 }
 
-/// The event since a servo's last whole pulse that selects the rule for the next change of its width.
+/// The event since a servo's last complete pulse that selects the rule for the next change of its width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interruption {
     /// No event: the slew limit applies.
@@ -112,16 +112,16 @@ pub(crate) struct ServoHistory {
     pub last_start: Time,
     /// The end of the last pulse.
     pub last_end: Time,
-    /// The width of the last whole pulse, cycles. A whole pulse is neither cut short nor delayed at its end.
+    /// The width of the last complete pulse, cycles. A complete pulse is neither cut short nor delayed at its end.
     pub last_whole_width: u32,
-    /// The start of the last whole pulse.
+    /// The start of the last complete pulse.
     pub last_whole_start: Time,
     pub interruption: Interruption,
-    /// True if a hang interrupted the pulses after the last whole pulse.
+    /// True if a hang interrupted the pulses after the last complete pulse.
     pub was_hung: bool,
     /// True if a reset has cleared the servo's position in RAM.
     pub is_position_lost: bool,
-    /// True if the servo's settings have changed since its last whole pulse.
+    /// True if the servo's settings have changed since its last complete pulse.
     pub is_recalibrated: bool,
     /// The time until which interrupts are blocked, so that pulses may be missing.
     blocked_until: Time,
