@@ -23,7 +23,7 @@ pub(crate) struct PredictionRange {
 
 impl PredictionRange {
     /// Computes the range of a gait at a pace, which is a multiple of the gait's own.
-    pub(crate) fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
+    pub(crate) fn compute(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
         let movement_range = MovementRange::of(robot, gait, pace);
         let (smallest, largest) = (movement_range.smallest, movement_range.largest);
         Self {

@@ -165,8 +165,8 @@ impl<'a> WalkLine<'a> {
 }
 
 impl LargestDeviation {
-    /// The largest deviation, in standard errors, among the components of the movement that are predicted.
-    fn of(points: &[CyclePoint], predicted: [Option<f64>; 3]) -> Option<Self> {
+    /// Finds the largest deviation, in standard errors, among the components of the movement that are predicted.
+    fn find(points: &[CyclePoint], predicted: [Option<f64>; 3]) -> Option<Self> {
         let deviations = points.iter().flat_map(|point| {
             let differs = point.standardised_differences();
             (0..3).map(move |axis| (point, axis, differs[axis]))
@@ -273,7 +273,7 @@ impl<'a> GaitReport<'a> {
                 .iter()
                 .map(phase_point_of)
                 .collect(),
-            farthest: LargestDeviation::of(&measured_gait.cycle_path, predicted_values),
+            farthest: LargestDeviation::find(&measured_gait.cycle_path, predicted_values),
             mujoco: None,
             range: None,
             predicted_path: &candidate.predicted_gait.path,
@@ -380,7 +380,7 @@ impl<'a> Report<'a> {
         for report in &mut self.gaits {
             let gait = robot.gait(report.gait);
             let pace = f64::from(report.speed) / 100.0;
-            report.range = gait.map(|gait| PredictionRange::of(robot, gait, pace));
+            report.range = gait.map(|gait| PredictionRange::compute(robot, gait, pace));
         }
         self
     }

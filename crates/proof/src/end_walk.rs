@@ -8,7 +8,7 @@ use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
 use crate::rows::{
-    PairSample, columns, for_each_lane_group, gather_lanes, q15_to_sine, splat, tally_rows,
+    PairSample, columns, for_each_group, gather_lanes, q15_to_sine, splat, tally_rows,
 };
 use crate::tally::{LENGTH_BAND_STEPS, Tally, margin_band};
 
@@ -62,51 +62,48 @@ impl<'a> EndComparison<'a> {
         tally_rows(left, piece_index, progress, |row| {
             let mut tally = Tally::default();
             let crank_left = splat(left.exact[row]);
-            for_each_lane_group(
-                columns(sample, row, right.fixed.len()),
-                |lane_columns, valid_count| {
-                    let crank_right = gather_lanes(&right.exact, lane_columns);
-                    let pose =
-                        self.exact
-                            .pose_unchecked(AssemblyMode::Ahead, crank_left, crank_right);
-                    let are_closed = self.exact.closes(&pose);
-                    let Lanes(type2) = pose.type2;
-                    let Lanes(type1_left) = pose.type1_left();
-                    let Lanes(type1_right) = pose.type1_right();
-                    let Lanes(gap_across_mm) = pose.gap.x;
-                    for lane in 0..valid_count {
-                        let column = lane_columns[lane];
-                        let truth = EndTruth {
-                            is_closed: are_closed[lane],
-                            type2: type2[lane],
-                            type1: [type1_left[lane], type1_right[lane]],
-                            crank_tip_distance_mm: gap_across_mm[lane],
-                        };
-                        let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
-                        let describe_place = || {
-                            format!(
-                                "{} at {:.4} and {:.4} deg",
-                                self.end.name(),
-                                left.degrees[row],
-                                right.degrees[column]
-                            )
-                        };
-                        self.compare_pair(&mut tally, margins, &truth, describe_place);
-                        let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
-                        // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
-                        let is_in_cell = match self.end {
-                            End::Head => self.cells.contains(left_sweep, right_sweep),
-                            End::Tail => self.cells.contains(right_sweep, left_sweep),
-                        };
-                        if is_in_cell {
-                            let legs = [left.fixed[row], right.fixed[column]];
-                            let is_accepted = self.accepts(margins)
-                                && legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
-                            tally.count_certified(is_accepted, describe_place);
-                        }
+            for_each_group(columns(sample, row, right.fixed.len()), |group, count| {
+                let crank_right = gather_lanes(&right.exact, group);
+                let pose = self
+                    .exact
+                    .pose_unchecked(AssemblyMode::Ahead, crank_left, crank_right);
+                let are_closed = self.exact.closes(&pose);
+                let Lanes(type2) = pose.type2;
+                let Lanes(type1_left) = pose.type1_left();
+                let Lanes(type1_right) = pose.type1_right();
+                let Lanes(gap_across_mm) = pose.gap.x;
+                for lane in 0..count {
+                    let column = group[lane];
+                    let truth = EndTruth {
+                        is_closed: are_closed[lane],
+                        type2: type2[lane],
+                        type1: [type1_left[lane], type1_right[lane]],
+                        crank_tip_distance_mm: gap_across_mm[lane],
+                    };
+                    let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
+                    let describe_place = || {
+                        format!(
+                            "{} at {:.4} and {:.4} deg",
+                            self.end.name(),
+                            left.degrees[row],
+                            right.degrees[column]
+                        )
+                    };
+                    self.compare_pair(&mut tally, margins, &truth, describe_place);
+                    let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
+                    // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
+                    let is_in_cell = match self.end {
+                        End::Head => self.cells.contains(left_sweep, right_sweep),
+                        End::Tail => self.cells.contains(right_sweep, left_sweep),
+                    };
+                    if is_in_cell {
+                        let legs = [left.fixed[row], right.fixed[column]];
+                        let is_accepted = self.accepts(margins)
+                            && legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
+                        tally.count_certified(is_accepted, describe_place);
                     }
-                },
-            );
+                }
+            });
             tally
         })
     }

@@ -19,7 +19,7 @@ pub struct Positions {
 
 impl Positions {
     /// Computes all positions of the servo with this index, 0 to 3, in the firmware's steps.
-    pub fn of(guard: &CoreRobot, servo: usize) -> Self {
+    pub fn compute(guard: &CoreRobot, servo: usize) -> Self {
         let neutral = guard.neutral_angles()[servo];
         let calibration = guard.calibration()[servo];
         let end = End::of_servo(servo);

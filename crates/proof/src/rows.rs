@@ -58,7 +58,7 @@ pub fn tally_rows(
 
 /// Calls `visit` with the columns of a row, [`LANES`] at a time, and with the number of valid columns; the last column
 /// is repeated to fill the group.
-pub fn for_each_lane_group(
+pub fn for_each_group(
     mut columns: impl Iterator<Item = usize>,
     mut visit: impl FnMut([usize; LANES], usize),
 ) {

@@ -9,7 +9,7 @@ use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
 use crate::rows::{
-    PairSample, columns, for_each_lane_group, gather_lanes, q15_to_sine, splat, tally_rows,
+    PairSample, columns, for_each_group, gather_lanes, q15_to_sine, splat, tally_rows,
 };
 use crate::tally::{LENGTH_BAND_STEPS, MARGIN_BAND, Tally};
 
@@ -57,45 +57,42 @@ impl<'a> SideComparison<'a> {
             let mut tally = Tally::default();
             let crank = in_side_frame(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));
-            for_each_lane_group(
-                columns(sample, row, rear.fixed.len()),
-                |lane_columns, valid_count| {
-                    // Positions are in the frame of their end, arms in the frame of the chassis.
-                    let crank_rear = End::Tail.mirror(gather_lanes(&rear.exact, lane_columns));
-                    let pose = self
-                        .exact
-                        .pose_unchecked(self.side.rear_arm(crank_rear), front_arm);
-                    let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
-                    for lane in 0..valid_count {
-                        let column = lane_columns[lane];
-                        tally.pair_count += 1;
-                        let length_sq = self
-                            .fixed
-                            .length_sq(&crank, &in_side_frame(rear.fixed[column]));
-                        let length_mm = f64::from(length_sq).sqrt() / self.steps_per_mm;
-                        Tally::raise(&mut tally.max_slider_error, (length_mm - d[lane]).abs());
-                        let is_allowed = self.fixed.allows(length_sq);
-                        if self.cells.contains(front.sweep(row), rear.sweep(column)) {
-                            tally.count_certified(is_allowed, || {
-                                format!(
-                                    "{} side at {:.4} and {:.4} deg",
-                                    self.side, front.degrees[row], rear.degrees[column]
-                                )
-                            });
-                        }
-                        let [min, max] = self.stroke_limits;
-                        let limit_distance = (s[lane] - min).min(max - s[lane]);
-                        if is_allowed != (limit_distance >= 0.0) {
-                            tally.record_difference(true, limit_distance.abs(), band_mm, || {
+            for_each_group(columns(sample, row, rear.fixed.len()), |group, count| {
+                // Positions are in the frame of their end, arms in the frame of the chassis.
+                let crank_rear = End::Tail.mirror(gather_lanes(&rear.exact, group));
+                let pose = self
+                    .exact
+                    .pose_unchecked(self.side.rear_arm(crank_rear), front_arm);
+                let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
+                for lane in 0..count {
+                    let column = group[lane];
+                    tally.pair_count += 1;
+                    let length_sq = self
+                        .fixed
+                        .length_sq(&crank, &in_side_frame(rear.fixed[column]));
+                    let length_mm = f64::from(length_sq).sqrt() / self.steps_per_mm;
+                    Tally::raise(&mut tally.max_slider_error, (length_mm - d[lane]).abs());
+                    let is_allowed = self.fixed.allows(length_sq);
+                    if self.cells.contains(front.sweep(row), rear.sweep(column)) {
+                        tally.count_certified(is_allowed, || {
+                            format!(
+                                "{} side at {:.4} and {:.4} deg",
+                                self.side, front.degrees[row], rear.degrees[column]
+                            )
+                        });
+                    }
+                    let [min, max] = self.stroke_limits;
+                    let limit_distance = (s[lane] - min).min(max - s[lane]);
+                    if is_allowed != (limit_distance >= 0.0) {
+                        tally.record_difference(true, limit_distance.abs(), band_mm, || {
                             format!(
                                 "at {:.4} and {:.4} deg the slider is {length_mm:.5} mm long by the guard, {:.5} by floating point",
                                 front.degrees[row], rear.degrees[column], d[lane]
                             )
                         });
-                        }
                     }
-                },
-            );
+                }
+            });
             tally
         })
     }

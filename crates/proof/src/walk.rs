@@ -40,7 +40,7 @@ impl<'a> GuardComparison<'a> {
 
     /// The positions of the servo with this index, 0 to 3.
     fn positions(&self, servo: usize) -> &Positions {
-        self.positions[servo].get_or_init(|| Positions::of(self.guard, servo))
+        self.positions[servo].get_or_init(|| Positions::compute(self.guard, servo))
     }
 
     /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
@@ -88,7 +88,7 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Fi
         findings.push(Finding {
             part: format!("leg {leg_name}"),
             servos: vec![servo::SERVO_NAMES[servo]],
-            tally: compare_leg(robot, guard, &Positions::of(guard, servo)),
+            tally: compare_leg(robot, guard, &Positions::compute(guard, servo)),
         });
     }
     findings

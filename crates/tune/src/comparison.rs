@@ -49,11 +49,16 @@ pub struct GaitFigures {
 
 impl Comparison {
     /// Simulates both gaits on the judge's robots, at paces at which their fastest servos turn at `rate` (deg/s).
-    pub(crate) fn of(judge: &Judge, rate: f64, gait: &CheckedGait, found_gait: &BuiltGait) -> Self {
+    pub(crate) fn simulate(
+        judge: &Judge,
+        rate: f64,
+        gait: &CheckedGait,
+        found_gait: &BuiltGait,
+    ) -> Self {
         // At another pace the gait covers the same distance, so only its period changes.
         let period_factor = gait.audit().peak_speed.speed / rate;
-        let (given, given_speeds) = GaitFigures::of(judge, gait, period_factor);
-        let (tuned, tuned_speeds) = GaitFigures::of(judge, found_gait.gait(), 1.0);
+        let (given, given_speeds) = GaitFigures::simulate(judge, gait, period_factor);
+        let (tuned, tuned_speeds) = GaitFigures::simulate(judge, found_gait.gait(), 1.0);
         let faster_count = tuned_speeds
             .iter()
             .zip(&given_speeds)
@@ -84,7 +89,7 @@ impl Comparison {
 
 impl GaitFigures {
     /// Simulates a gait whose period is multiplied by `period_factor`; also returns its speed on each robot.
-    fn of(judge: &Judge, gait: &CheckedGait, period_factor: f64) -> (Self, Vec<f64>) {
+    fn simulate(judge: &Judge, gait: &CheckedGait, period_factor: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * period_factor;
         let audit = gait.audit();
         let margins = [audit.type2, audit.type1, audit.leg];

@@ -51,7 +51,7 @@ impl Goal {
     /// # Errors
     /// Fails for a gait that stands, walks along a curve, or whose movement depends on unmeasurable differences
     /// between the pads.
-    pub fn of(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
+    pub fn from_gait(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
         let gait_name = || gait.name().to_owned();
         let movement = gait.predict(&ground.with_rigid_drive());
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
@@ -127,7 +127,7 @@ mod tests {
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         let goal_of = |name: &str| {
             let gait = robot.gait(name).expect("paper.toml has the gait");
-            Goal::of(gait, robot.ground()).map_err(|error| error.to_string())
+            Goal::from_gait(gait, robot.ground()).map_err(|error| error.to_string())
         };
         assert_eq!(goal_of("walk"), Ok(Goal::Ahead(1.0)));
         assert_eq!(goal_of("back"), Ok(Goal::Ahead(-1.0)));

@@ -30,8 +30,8 @@ pub struct BuiltGait {
 impl BuiltGait {
     /// Builds a gait with the shortest period at which no servo is faster than `max_rate` (deg/s). Returns `None` if
     /// the gait violates a limit of the robot, or if that period is longer than [`MAX_PERIOD_S`].
-    pub(crate) fn of(robot: &Robot, bars: &Bars, max_rate: f64) -> Option<Self> {
-        let build = |period: f64| {
+    pub(crate) fn build(robot: &Robot, bars: &Bars, max_rate: f64) -> Option<Self> {
+        let build_with_period = |period: f64| {
             let bars = Bars {
                 period,
                 ..bars.clone()
@@ -41,13 +41,13 @@ impl BuiltGait {
             Some(Self { robot, table })
         };
         let mut shortest_gait: Option<Self> = None;
-        let mut built = build(SLOW_PERIOD_S)?;
+        let mut built = build_with_period(SLOW_PERIOD_S)?;
         for _ in 0..PERIOD_ITERATIONS {
             let period = round_period(built.gait().period() * built.peak_rate() / max_rate);
             if period > MAX_PERIOD_S {
                 return None;
             }
-            built = build(period)?;
+            built = build_with_period(period)?;
             let is_shorter = |shortest: &Self| period < shortest.gait().period();
             if built.peak_rate() <= max_rate && shortest_gait.as_ref().is_none_or(is_shorter) {
                 shortest_gait = Some(built.clone());
@@ -55,7 +55,7 @@ impl BuiltGait {
         }
         // The peak speed depends on the phases at which frames are sent, so a slightly shorter period may also keep
         // the servos within the limit.
-        let shorter_gait = build(shortest_gait.as_ref()?.gait().period() - 0.01);
+        let shorter_gait = build_with_period(shortest_gait.as_ref()?.gait().period() - 0.01);
         shorter_gait
             .filter(|gait| gait.peak_rate() <= max_rate)
             .or(shortest_gait)
@@ -75,7 +75,7 @@ impl BuiltGait {
                 "x",
                 start,
             );
-            Self::of(robot, &bars, max_rate).is_some()
+            Self::build(robot, &bars, max_rate).is_some()
         };
         let (mut low, mut high) = AMPLITUDE_BOUNDS;
         while high - low > 0.2 {
@@ -211,7 +211,8 @@ mod tests {
         let robot = paper_robot();
         let bars = wave_bars(45.0, 0.375);
         for rate in [150.0, 262.2, 300.0] {
-            let built = BuiltGait::of(&robot, &bars, rate).expect("the gait is within the limits");
+            let built =
+                BuiltGait::build(&robot, &bars, rate).expect("the gait is within the limits");
             assert!(
                 built.peak_rate() <= rate && built.peak_rate() > 0.97 * rate,
                 "{rate} {}",
@@ -224,7 +225,7 @@ mod tests {
     fn a_gait_beyond_a_limit_is_not_built() {
         // At 45 deg in both directions, the margins of the legs are below their limit.
         let wide_bars = wave_bars(45.0, 1.0);
-        assert!(BuiltGait::of(&paper_robot(), &wide_bars, 250.0).is_none());
+        assert!(BuiltGait::build(&paper_robot(), &wide_bars, 250.0).is_none());
     }
 
     #[test]

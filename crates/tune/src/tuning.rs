@@ -76,7 +76,7 @@ impl Tuning {
         name: &str,
         seed: u64,
     ) -> Result<Self, TuningError> {
-        let goal = Goal::of(gait, ground)?;
+        let goal = Goal::from_gait(gait, ground)?;
         let rate = rate_limit(robot, gait, rate)?;
         let max_amplitude = BuiltGait::find_max_amplitude(robot, goal, rate);
         Ok(Self {
@@ -133,12 +133,12 @@ impl Tuning {
     pub fn compare(&self, found_gait: &BuiltGait, robot_count: usize) -> Comparison {
         let seed = self.seed.wrapping_add(COMPARISON_SEED_OFFSET);
         let judge = Judge::new(&self.robot, &self.ground, self.goal(), robot_count, seed);
-        Comparison::of(&judge, self.rate, &self.gait, found_gait)
+        Comparison::simulate(&judge, self.rate, &self.gait, found_gait)
     }
 
     fn build(&self, kind: GaitKind, parameters: &[f64]) -> Option<BuiltGait> {
         let bars = plan_gait(kind, self.space, &self.found_gait_name, parameters);
-        BuiltGait::of(&self.robot, &bars, self.rate)
+        BuiltGait::build(&self.robot, &bars, self.rate)
     }
 }
 
