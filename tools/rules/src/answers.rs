@@ -119,15 +119,15 @@ impl Observer {
         }
     }
 
-    /// True if a servo must wake in its rest pose after a restart now. Since the last complete pulse, the supply has been
-    /// good and main has been undisturbed for long enough to save the pose.
+    /// True if a servo must wake in its rest pose after a restart now. Since the last complete pulse, the supply has
+    /// been good and main has been undisturbed for long enough to save the pose.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
-        let last_whole_start = self.servos[servo].last_whole_start;
+        let last_complete_start = self.servos[servo].last_complete_start;
         let min_good_mv = self.limits.min_good_mv();
         self.limits.is_memory_reliable
-            && self.now - last_whole_start > MAX_SAVE_TIME
-            && self.supply.is_good_since(last_whole_start, min_good_mv)
-            && self.disturbed_until <= last_whole_start
+            && self.now - last_complete_start > MAX_SAVE_TIME
+            && self.supply.is_good_since(last_complete_start, min_good_mv)
+            && self.disturbed_until <= last_complete_start
             && !self.has_unsaved_settings
     }
 }

@@ -113,9 +113,9 @@ pub(crate) struct ServoHistory {
     /// The end of the last pulse.
     pub last_end: Time,
     /// The width of the last complete pulse, cycles. A complete pulse is neither cut short nor delayed at its end.
-    pub last_whole_width: u32,
+    pub last_complete_width: u32,
     /// The start of the last complete pulse.
-    pub last_whole_start: Time,
+    pub last_complete_start: Time,
     pub interruption: Interruption,
     /// True if a hang interrupted the pulses after the last complete pulse.
     pub was_hung: bool,
@@ -131,8 +131,8 @@ impl ServoHistory {
     pub(crate) const UNKNOWN: Self = Self {
         last_start: NEVER,
         last_end: NEVER,
-        last_whole_width: 0,
-        last_whole_start: NEVER,
+        last_complete_width: 0,
+        last_complete_start: NEVER,
         interruption: Interruption::Unknown,
         was_hung: false,
         is_position_lost: false,
@@ -155,8 +155,8 @@ impl ServoHistory {
         }
     }
 
-    /// Records a restart. `has_hung` is true if the program hung before the restart, `keeps_position` if the robot keeps
-    /// the servo's position in RAM, `is_rest_pose_saved` if the EEPROM contains the servo's current rest pose.
+    /// Records a restart. `has_hung` is true if the program hung before the restart, `keeps_position` if the robot
+    /// keeps the servo's position in RAM, `is_rest_pose_saved` if the EEPROM contains the servo's current rest pose.
     pub(crate) fn note_restart(
         &mut self,
         has_hung: bool,
@@ -200,13 +200,14 @@ impl Observer {
             self.judge_first_pulse(pulse);
         }
         self.judge_promises_about_pulse(pulse.servo);
-        let leap = pulse.width.abs_diff(servo.last_whole_width);
-        let is_whole = !pulse.is_cut && !pulse.is_end_late;
-        let is_comparable = servo.last_whole_start > NEVER && !(is_first && servo.is_recalibrated);
-        if is_whole && is_comparable && leap > self.limits.max_leap_cycles[pulse.servo] {
+        let change = pulse.width.abs_diff(servo.last_complete_width);
+        let is_complete = !pulse.is_cut && !pulse.is_end_late;
+        let is_comparable =
+            servo.last_complete_start > NEVER && !(is_first && servo.is_recalibrated);
+        if is_complete && is_comparable && change > self.limits.max_leap_cycles[pulse.servo] {
             let observation = format!(
                 "{name} has {} cycles and then {}",
-                servo.last_whole_width, pulse.width
+                servo.last_complete_width, pulse.width
             );
             match servo.interruption {
                 Interruption::Nothing => self.fail(Rule::SlewLimit, observation),
@@ -215,16 +216,16 @@ impl Observer {
                 Interruption::Unknown => {}
             }
         }
-        if is_whole && !is_first && leap > MAX_STEADY_CHANGE {
+        if is_complete && !is_first && change > MAX_STEADY_CHANGE {
             self.judge_deadman(pulse.servo);
         }
         let servo = &mut self.servos[pulse.servo];
         servo.last_start = now;
         servo.last_end = now + Time::from(pulse.width);
-        if is_whole {
+        if is_complete {
             *servo = ServoHistory {
-                last_whole_width: pulse.width,
-                last_whole_start: now,
+                last_complete_width: pulse.width,
+                last_complete_start: now,
                 interruption: if servo.blocked_until > now {
                     Interruption::Unknown
                 } else {
@@ -267,24 +268,24 @@ impl Observer {
             self.fail(Rule::PulsesPermitted, format!("{name} begins"));
         }
         // The frame after a hang is completed even if a `rest` command arrives within it.
-        let hung_until = self.started_at.max(servo.last_whole_start);
+        let hung_until = self.started_at.max(servo.last_complete_start);
         let has_rested =
             self.rest_ordered_at > hung_until && now - self.rest_ordered_at > MAX_TIME_TO_REST;
         let is_after_hang = servo.was_hung
             && !servo.is_position_lost
-            && servo.last_whole_start > NEVER
-            && now - servo.last_whole_start < 1_000 * MS
+            && servo.last_complete_start > NEVER
+            && now - servo.last_complete_start < 1_000 * MS
             && !has_rested;
-        let has_no_command = self.ordered_at < servo.last_whole_start;
-        let leap = pulse.width.abs_diff(servo.last_whole_width);
+        let has_no_command = self.ordered_at < servo.last_complete_start;
+        let change = pulse.width.abs_diff(servo.last_complete_width);
         if is_after_hang
             && has_no_command
             && !pulse.is_cut
-            && leap > self.limits.max_leap_cycles[pulse.servo]
+            && change > self.limits.max_leap_cycles[pulse.servo]
         {
             let observation = format!(
                 "{name} had {} cycles before and {} after",
-                servo.last_whole_width, pulse.width
+                servo.last_complete_width, pulse.width
             );
             self.fail(Rule::HeldAfterHang, observation);
         }
