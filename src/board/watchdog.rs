@@ -17,9 +17,9 @@ use super::{kept, pulses};
 /// The address of WDTCSR.
 const WDTCSR: u8 = 0x60;
 /// The value of WDTCSR that permits a change within four cycles.
-const CHANGE: u8 = 0x18;
+const ENABLE_CHANGE: u8 = 0x18;
 /// The value of WDTCSR that selects an interrupt after 125 ms and a reset after 125 ms more.
-const GUARD: u8 = 0x4b;
+const INTERRUPT_THEN_RESET: u8 = 0x4b;
 
 /// Starts the watchdog. Call it once, with interrupts off and WDRF cleared.
 pub fn start() {
@@ -30,8 +30,8 @@ pub fn start() {
             "sts {wdtcsr}, {change}",
             "sts {wdtcsr}, {guard}",
             wdtcsr = const WDTCSR,
-            change = in(reg) CHANGE,
-            guard = in(reg) GUARD,
+            change = in(reg) ENABLE_CHANGE,
+            guard = in(reg) INTERRUPT_THEN_RESET,
             options(nostack, preserves_flags),
         );
     }

@@ -10,7 +10,7 @@ use crate::legs::FORWARD_TURN_SIGN;
 
 /// The dry friction of the mechanism between the servos and their legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Joints {
+pub struct JointFriction {
     /// Friction of the pins that a servo turns, as a torque at the servo, N mm.
     pub pin_torque: f64,
     /// Friction of a slider, N.
@@ -24,7 +24,7 @@ pub struct Joints {
 /// The front and the hind servo of each slider: the left slider first, then the right one.
 const SLIDER_SERVOS: [[usize; 2]; 2] = [[0, 3], [1, 2]];
 
-impl Joints {
+impl JointFriction {
     /// Lever arms of the sliders at the servos, at sweeps in deg: derivatives of the sliders' lengths with respect to
     /// each servo's sweep, mm/rad.
     pub(crate) fn slider_lever_arms(&self, sweeps: [f64; 4]) -> [f64; 4] {

@@ -61,7 +61,7 @@ pub use drive::{Drive, DriveKind};
 pub use feet::{Body, Feet, GRAVITY};
 pub use friction::Point;
 pub use ground::{DEFAULT_FRICTION, Ground};
-pub use joints::Joints;
+pub use joints::JointFriction;
 pub use legs::{FORWARD_TURN_SIGN, FRONT_SIGN, LEFT_SIGN};
 pub use motor::{Motor, Motors};
 pub use place::Place;

@@ -5,7 +5,7 @@
 //! Through a gear ratio of several hundred the rotor's inertia is far larger than that of a leg, so only rotor
 //! and friction decide how well the servo follows its pulses.
 
-use crate::joints::Joints;
+use crate::joints::JointFriction;
 
 /// A servo's motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,7 @@ pub struct Motors {
     /// The motors in servo order.
     pub per_servo: [Motor; 4],
     /// Friction of pins and sliders.
-    pub joints: Joints,
+    pub joints: JointFriction,
 }
 
 /// Upper bound of the time step, s.
@@ -116,7 +116,7 @@ mod tests {
         half_dead_band: 0.0,
     };
 
-    const JOINTS: Joints = Joints {
+    const JOINTS: JointFriction = JointFriction {
         pin_torque: 0.0,
         slider_force: 0.0,
         slider_arms: [[-22.5, 19.8], [-22.5, -19.8], [22.5, -19.8], [22.5, 19.8]],
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    fn motors_with(motor: Motor, joints: Joints) -> Motors {
+    fn motors_with(motor: Motor, joints: JointFriction) -> Motors {
         Motors {
             per_servo: [motor; 4],
             joints,
@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn friction_of_the_pins_slows_a_servo_and_holds_it_above_the_stall_torque() {
         let light_ground = ground_with(0.1, 0.001);
-        let joints_with_pin_torque = |pin_torque| Joints {
+        let joints_with_pin_torque = |pin_torque| JointFriction {
             pin_torque,
             ..JOINTS
         };
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn a_slider_resists_only_servos_that_change_its_length() {
         let light_ground = ground_with(0.1, 0.001);
-        let joints = Joints {
+        let joints = JointFriction {
             slider_force: 3.0,
             ..JOINTS
         };

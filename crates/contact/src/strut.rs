@@ -46,7 +46,7 @@ impl Strut {
 
     /// Lever arm of the strut's pull about the leg's pivot, mm, while the leg does not lag and the servo is at this
     /// sweep, deg.
-    pub fn lever(&self, leg: usize, sweep: f64) -> f64 {
+    pub fn lever_arm(&self, leg: usize, sweep: f64) -> f64 {
         self.triangle(leg, sweep).lever_arm().abs()
     }
 

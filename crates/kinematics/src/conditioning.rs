@@ -68,8 +68,8 @@ impl FiveBarPose {
     /// The velocity along each coupler per rate of its crank, mm per radian: the diagonal of B.
     fn coupler_velocities(&self) -> (f64, f64) {
         (
-            -self.bars.left_crank_length * self.type1_left(),
-            self.bars.right_crank_length * self.type1_right(),
+            -self.five_bar.left_crank_length * self.type1_left(),
+            self.five_bar.right_crank_length * self.type1_right(),
         )
     }
 }

@@ -73,7 +73,7 @@ impl Solution {
         let mut k = [[0.0; 4]; 8];
         for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
             let ([left, right], pose) = (end.servos(), self.end(end));
-            let five_bar = &pose.bars;
+            let five_bar = &pose.five_bar;
             let crank = end.mirror(pose.left_crank) * five_bar.left_crank_length;
             put_derivative(&mut k, row, left, crank.rotated_left());
             let crank = end.mirror(pose.right_crank) * five_bar.right_crank_length;
@@ -92,7 +92,7 @@ impl Solution {
     pub fn passive_matrix(&self) -> [[f64; 8]; 8] {
         let mut k = [[0.0; 8]; 8];
         for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
-            let ([left, right], five_bar) = (self.couplers(end), &self.end(end).bars);
+            let ([left, right], five_bar) = (self.couplers(end), &self.end(end).five_bar);
             put_derivative(
                 &mut k,
                 row,
@@ -118,7 +118,7 @@ impl Solution {
     pub fn block_determinants(&self) -> BlockDeterminants {
         let block_of = |end: End| {
             let pose = self.end(end);
-            let lengths = pose.bars.left_coupler_length * pose.bars.right_coupler_length;
+            let lengths = pose.five_bar.left_coupler_length * pose.five_bar.right_coupler_length;
             // Mirroring changes the sign of the sine.
             -end.sign() * lengths * pose.type2
         };

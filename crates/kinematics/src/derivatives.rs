@@ -133,17 +133,17 @@ struct LoopDerivatives {
 /// Solves the first and second time derivatives of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3 for the couplers, where u1 to
 /// u4 are the unit vectors of the links.
 fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopDerivatives {
-    let r1 = pose.left_crank * pose.bars.left_crank_length;
-    let r2 = pose.left_coupler * pose.bars.left_coupler_length;
-    let r3 = pose.right_coupler * pose.bars.right_coupler_length;
-    let r4 = pose.right_crank * pose.bars.right_crank_length;
+    let r1 = pose.left_crank * pose.five_bar.left_crank_length;
+    let r2 = pose.left_coupler * pose.five_bar.left_coupler_length;
+    let r3 = pose.right_coupler * pose.five_bar.right_coupler_length;
+    let r4 = pose.right_crank * pose.five_bar.right_crank_length;
     let (u2, u3) = (pose.left_coupler, pose.right_coupler);
     // The unknown rates x of theta2 and y of theta3 obey x rot(r2) - y rot(r3) = c, where rot turns a vector by +90
     // degrees. The dot product with u3 isolates x, that with u2 isolates y.
     let solve_couplers = |c: Vector| {
         (
-            c.dot(u3) / (pose.bars.left_coupler_length * pose.type2),
-            c.dot(u2) / (pose.bars.right_coupler_length * pose.type2),
+            c.dot(u3) / (pose.five_bar.left_coupler_length * pose.type2),
+            c.dot(u2) / (pose.five_bar.right_coupler_length * pose.type2),
         )
     };
     let (w1, w4) = (crank_left.rate, crank_right.rate);

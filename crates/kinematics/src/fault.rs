@@ -7,14 +7,14 @@ use crate::side::Side;
 
 /// A mechanism of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum Mechanism {
     /// The five-bar of an end.
     End(End),
     /// The slider of a side.
     Side(Side),
 }
 
-impl fmt::Display for Part {
+impl fmt::Display for Mechanism {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::End(end) => write!(f, "{end}"),
@@ -102,14 +102,14 @@ impl core::error::Error for Fault {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Infeasible {
     /// The mechanism whose loop does not close.
-    pub part: Part,
+    pub mechanism: Mechanism,
     /// The reason why it does not close.
     pub fault: Fault,
 }
 
 impl fmt::Display for Infeasible {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.part, self.fault)
+        write!(f, "{}: {}", self.mechanism, self.fault)
     }
 }
 

@@ -51,7 +51,7 @@ pub enum AssemblyMode {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiveBarPose<T = f64> {
     /// Links of the five-bar.
-    pub bars: FiveBar,
+    pub five_bar: FiveBar,
     /// Direction of the left crank, length one.
     pub left_crank: Vector<T>,
     /// Direction of the right crank, length one.
@@ -256,7 +256,7 @@ impl FiveBar {
         let left_vector = gap.scaled(foot) + rise;
         let right_vector = gap.scaled(foot - T::constant(1.0)) + rise;
         FiveBarPose {
-            bars: *self,
+            five_bar: *self,
             left_crank: left,
             right_crank: right,
             left_tip,

@@ -110,7 +110,7 @@ pub use conditioning::Jacobian;
 pub use constraints::{BlockDeterminants, PassiveJoints};
 pub use derivatives::{Derivative, Derivatives, ServoMotion};
 pub use end::End;
-pub use fault::{Fault, Infeasible, Part};
+pub use fault::{Fault, Infeasible, Mechanism};
 pub use five_bar::{AssemblyMode, Elbow, FiveBar, FiveBarPose, InverseSolution, WorkingMode};
 pub use leg::{Leg, LegPose};
 pub use limits::{Limits, Violation};

@@ -2,7 +2,7 @@
 
 use crate::angle::sin_cos_all;
 use crate::end::End;
-use crate::fault::{Fault, Infeasible, Part};
+use crate::fault::{Fault, Infeasible, Mechanism};
 use crate::five_bar::{AssemblyMode, FiveBar, FiveBarPose};
 use crate::leg::{Leg, LegPose};
 use crate::links::Links;
@@ -219,14 +219,15 @@ impl Lizard {
     /// Checks that every loop of a solution closes.
     #[inline]
     fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
-        let infeasible_at = |part: Part| move |fault: Fault| Infeasible { part, fault };
+        let infeasible_at =
+            |mechanism: Mechanism| move |fault: Fault| Infeasible { mechanism, fault };
         for end in End::ALL {
             let closure = self.end(end).check(solution.end(end));
-            closure.map_err(infeasible_at(Part::End(end)))?;
+            closure.map_err(infeasible_at(Mechanism::End(end)))?;
         }
         for side in Side::ALL {
             let closure = self.side(side).check(solution.side(side));
-            closure.map_err(infeasible_at(Part::Side(side)))?;
+            closure.map_err(infeasible_at(Mechanism::Side(side)))?;
         }
         Ok(())
     }
@@ -304,9 +305,9 @@ impl Lizard {
     /// # Errors
     /// Fails as [`FiveBar::inverse`] does.
     pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], Infeasible> {
-        let part = Part::End(end);
+        let mechanism = Mechanism::End(end);
         let solutions = self.end(end).inverse(point);
-        let [solution, ..] = solutions.map_err(|fault| Infeasible { part, fault })?;
+        let [solution, ..] = solutions.map_err(|fault| Infeasible { mechanism, fault })?;
         let angles = [solution.theta_left, solution.theta_right];
         let [left, right] = angles.map(|theta| end.mirror_angle(theta));
         Ok(match end {

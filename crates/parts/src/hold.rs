@@ -59,7 +59,7 @@ impl SpringEffect {
                 let sweeps = robot.sweeps(gait.table_angles(phase));
                 for (leg, sweep) in sweeps.into_iter().enumerate() {
                     let (lag, torque) = strut.slot_end(leg, sweep);
-                    let values = [strut.lever(leg, sweep), lag, torque];
+                    let values = [strut.lever_arm(leg, sweep), lag, torque];
                     for (range, value) in ranges.iter_mut().zip(values) {
                         *range = [range[0].min(value), range[1].max(value)];
                     }

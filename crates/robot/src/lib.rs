@@ -46,8 +46,8 @@ pub use checks::{
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, command_of};
 pub use lizard_contact::{
-    Body, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, Ground, Joints, Motor, Motors, Place,
-    Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,
+    Body, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, Ground, JointFriction, Motor, Motors,
+    Place, Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,
 };
 pub use measures::servo;
 pub use measures::{

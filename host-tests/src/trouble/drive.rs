@@ -47,7 +47,7 @@ impl<'a> Drive<'a> {
             robot,
             radio: Radio::new(link),
             wire: Wire::new([link.baud; 2]),
-            session: Session::new(start, true, false).with_person(),
+            session: Session::new(start, true, false).with_driver(),
             start,
             rng: Rng::with_seed(link.seed),
             partial_line: String::new(),

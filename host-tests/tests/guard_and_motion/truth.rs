@@ -10,7 +10,7 @@ use lizard_core::numbers::calibration::Calibration;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep};
-use lizard_kinematics::{Check, Infeasible, Limits, Part};
+use lizard_kinematics::{Check, Infeasible, Limits, Mechanism};
 use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::{CoreRobot, Robot};
 
@@ -243,10 +243,10 @@ impl Verdict {
 
 /// Returns the index of the five-bar that does not close; `None` if a side does not close.
 pub fn index_of_unclosed_five_bar(error: &Infeasible) -> Option<usize> {
-    match error.part {
-        Part::End(lizard_kinematics::End::Head) => Some(0),
-        Part::End(lizard_kinematics::End::Tail) => Some(1),
-        Part::Side(_) => None,
+    match error.mechanism {
+        Mechanism::End(lizard_kinematics::End::Head) => Some(0),
+        Mechanism::End(lizard_kinematics::End::Tail) => Some(1),
+        Mechanism::Side(_) => None,
     }
 }
 

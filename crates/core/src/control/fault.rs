@@ -45,14 +45,14 @@ const HEARTBEAT_FRAMES: u8 = 32;
 
 /// The pattern that the LED shows.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Led {
+pub struct LedPattern {
     /// Frames since the pattern began.
     frames: u8,
     /// The fault's code; 0 for the heartbeat.
     code: u8,
 }
 
-impl Led {
+impl LedPattern {
     /// The pattern at power-on: the heartbeat, lit first.
     pub const fn new() -> Self {
         Self { frames: 0, code: 0 }
@@ -97,7 +97,11 @@ mod tests {
     ];
 
     /// Advances the LED by some frames and returns its runs of equal frames, each as true if lit, and its length.
-    fn record_runs(led: &mut Led, fault: Option<Fault>, frames: usize) -> Vec<(bool, usize)> {
+    fn record_runs(
+        led: &mut LedPattern,
+        fault: Option<Fault>,
+        frames: usize,
+    ) -> Vec<(bool, usize)> {
         let mut runs: Vec<(bool, usize)> = Vec::new();
         for _ in 0..frames {
             let is_lit_now = led.advance(fault);
@@ -121,7 +125,7 @@ mod tests {
 
     #[test]
     fn without_a_fault_the_led_shows_the_heartbeat() {
-        let runs = record_runs(&mut Led::default(), None, 1000);
+        let runs = record_runs(&mut LedPattern::default(), None, 1000);
         assert!(runs[0].0, "the LED is lit first");
         assert!(
             runs[1..runs.len() - 1]
@@ -134,7 +138,7 @@ mod tests {
     fn the_led_flashes_as_many_times_as_the_faults_code_and_then_pauses() {
         for (index, fault) in ALL_FAULTS.into_iter().enumerate() {
             assert_eq!(usize::from(fault.code()), index + 1);
-            let mut led = Led::default();
+            let mut led = LedPattern::default();
             record_runs(&mut led, None, 13 * (index + 1));
             let runs = record_runs(&mut led, Some(fault), 1000);
             // The pauses separate the patterns.
@@ -166,7 +170,7 @@ mod tests {
                 .filter(|second_fault| *second_fault != first_fault)
             {
                 for frames in 1..300 {
-                    let mut led = Led::default();
+                    let mut led = LedPattern::default();
                     record_runs(&mut led, *first_fault, frames);
                     for frame in 0..400 {
                         let is_lit = led.advance(*second_fault);
@@ -183,7 +187,7 @@ mod tests {
 
     #[test]
     fn the_pattern_of_a_second_fault_starts_with_a_whole_flash() {
-        let mut led = Led::default();
+        let mut led = LedPattern::default();
         record_runs(&mut led, Some(Fault::Stack), 100);
         assert_eq!(
             record_runs(&mut led, Some(Fault::Guard), 10),

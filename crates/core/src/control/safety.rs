@@ -5,7 +5,7 @@
 //! command moves the robot again. Nothing here starts a motion by itself, except the `boot` action three seconds after
 //! power-on.
 
-use crate::control::fault::{Fault, Led};
+use crate::control::fault::{Fault, LedPattern};
 use crate::control::supervisor::{self, Event, Response, State};
 use crate::control::supply::{Level, Reading, Supply};
 use crate::numbers::supplies::Supplies;
@@ -54,7 +54,7 @@ pub enum Reaction {
 pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,
-    led: Led,
+    led: LedPattern,
     is_lit: bool,
     /// Number of late edges that have been handled as faults.
     handled_late_edges: u16,
@@ -119,7 +119,7 @@ impl Safety {
         Self {
             supply: Supply::new(),
             fault: None,
-            led: Led::new(),
+            led: LedPattern::new(),
             is_lit: false,
             handled_late_edges: 0,
             silence_ms: 0,

@@ -234,7 +234,9 @@ impl Motion {
     /// Freezes the pose in the next frame.
     pub fn stop(&mut self) {
         if !matches!(self.state, State::Resting) {
-            self.freeze(State::Holding { is_ordered: false });
+            self.freeze(State::Holding {
+                is_commanded: false,
+            });
         }
     }
 
@@ -309,8 +311,13 @@ impl Motion {
             (Some(Target::Gait(id)), _) => Activity::Gait(id),
             (Some(Target::Pose(_)), _) => Activity::Pose,
             (None, State::Resting) => Activity::Rest,
-            (None, State::Holding { is_ordered: true }) => Activity::Pose,
-            (None, State::Holding { is_ordered: false }) => Activity::Stop,
+            (None, State::Holding { is_commanded: true }) => Activity::Pose,
+            (
+                None,
+                State::Holding {
+                    is_commanded: false,
+                },
+            ) => Activity::Stop,
             (None, State::Moving { gait: None, .. }) => Activity::Pose,
             (None, State::Moving { gait: Some(id), .. })
             | (None | Some(Target::Standstill), State::Cycling { id, .. }) => Activity::Gait(id),
@@ -330,7 +337,9 @@ impl Motion {
     /// Makes `target` the next target, and wakes the servos if the robot rests.
     fn queue_target(&mut self, target: Target) {
         if matches!(self.state, State::Resting) {
-            self.state = State::Holding { is_ordered: false };
+            self.state = State::Holding {
+                is_commanded: false,
+            };
             self.stance.is_resting = false;
             self.stance.frames_awake = 0;
             // The servos are still where their last pulses turned them, if they had any. Settings that have
@@ -382,7 +391,9 @@ impl Motion {
         };
         let hazard = self.hazard_of(&pose);
         if hazard.is_some() {
-            self.freeze(State::Holding { is_ordered: false });
+            self.freeze(State::Holding {
+                is_commanded: false,
+            });
             self.hazard = hazard;
             return;
         }
@@ -391,7 +402,7 @@ impl Motion {
             && path.has_arrived()
         {
             self.state = match gait {
-                None => State::Holding { is_ordered: true },
+                None => State::Holding { is_commanded: true },
                 Some(id) => {
                     self.cycle_count.last_phase = 0;
                     State::cycling(&self.robot, *id)
@@ -422,7 +433,9 @@ impl Motion {
             Target::Gait(id) => (self.robot.gait(id).pose(self.robot.waves(), 0), Some(id)),
             Target::Standstill => {
                 self.has_come_to_standstill = true;
-                return self.freeze(State::Holding { is_ordered: false });
+                return self.freeze(State::Holding {
+                    is_commanded: false,
+                });
             }
         };
         self.state = State::Moving {

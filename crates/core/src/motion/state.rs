@@ -43,7 +43,7 @@ pub enum State {
     /// Holding the last pose.
     Holding {
         /// True if the pose was commanded, false if the robot was stopped in it.
-        is_ordered: bool,
+        is_commanded: bool,
     },
     /// Following a point-to-point move.
     Moving {

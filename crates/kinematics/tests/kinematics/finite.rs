@@ -140,7 +140,7 @@ fn a_length_that_is_not_finite_or_overflows_is_reported_with_its_part() {
             .expect_err("the robot has no finite pose");
         let expected = (part.to_string(), Fault::NotFinite);
         assert_eq!(
-            (infeasible.part.to_string(), infeasible.fault),
+            (infeasible.mechanism.to_string(), infeasible.fault),
             expected,
             "l{index}"
         );

@@ -125,7 +125,7 @@ pub(crate) fn check_gait(
         }
         let solution = measures.lizard.solve(&angles.into());
         let solution = solution.map_err(|infeasible| LimitViolation {
-            consequence: unclosed_loop_consequence(infeasible.part),
+            consequence: unclosed_loop_consequence(infeasible.mechanism),
             problem: format!("{infeasible} {}", at_phase(phase)),
         })?;
         for violation in measures.limits.violations(&solution) {

@@ -1,7 +1,7 @@
 //! The consequences of a violated condition for the robot, in plain words, without keys of robot.toml and without
 //! numbers.
 
-use lizard_kinematics::{Check, End, Part, Side};
+use lizard_kinematics::{Check, End, Mechanism, Side};
 
 /// The legs in servo order, as a message names them.
 const SPOKEN_LEG_NAMES: [&str; 4] = ["left front", "right front", "right hind", "left hind"];
@@ -32,10 +32,10 @@ pub(crate) fn consequence(check: Check) -> String {
 }
 
 /// Returns the consequence for the robot of a pose in which the loop of a part of the linkage does not close.
-pub(crate) fn unclosed_loop_consequence(part: Part) -> String {
-    match part {
-        Part::End(end) => format!("the links of the {end} would not reach each other"),
-        Part::Side(side) => format!("the {side} slider would have no length"),
+pub(crate) fn unclosed_loop_consequence(mechanism: Mechanism) -> String {
+    match mechanism {
+        Mechanism::End(end) => format!("the links of the {end} would not reach each other"),
+        Mechanism::Side(side) => format!("the {side} slider would have no length"),
     }
 }
 

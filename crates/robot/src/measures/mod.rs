@@ -34,7 +34,7 @@ pub use servo::{Servo, SpeedLimits};
 pub(crate) use strut::{mounted_spring_length, strut_with_coil};
 pub use supply::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Rail, Supplies, healthy_rail_mv};
 
-use lizard_contact::{Ground, Joints};
+use lizard_contact::{Ground, JointFriction};
 use lizard_core::numbers::bars::MIN_COUPLER_STEPS;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
@@ -65,7 +65,7 @@ pub(crate) struct Measures {
     /// The type of all four servos.
     pub servo_type: ServoType,
     /// Friction of the joints.
-    pub joints: Joints,
+    pub joints: JointFriction,
     /// Limits of margins and strokes.
     pub limits: Limits,
     pub speed_limits: SpeedLimits,
@@ -171,7 +171,7 @@ impl Measures {
         };
         match self.lizard.solve(&self.neutral_angles().into()) {
             Err(infeasible) => refuse(
-                unclosed_loop_consequence(infeasible.part),
+                unclosed_loop_consequence(infeasible.mechanism),
                 infeasible.to_string(),
             ),
             Ok(solution) => match self.limits.violations(&solution).next() {

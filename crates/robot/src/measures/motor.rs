@@ -4,7 +4,7 @@
 //! and no load the torque falls linearly with the speed, and both grow with the voltage. No data sheet gives the
 //! inertia of the rotor or the error at which the full torque is applied: these are assumed.
 
-use lizard_contact::{GRAVITY, Joints, Motor};
+use lizard_contact::{GRAVITY, JointFriction, Motor};
 use lizard_kinematics::Lizard;
 
 use crate::file::{Checked, Section, hint};
@@ -142,10 +142,14 @@ fn read_model(section: &Section) -> Checked<ServoType> {
 }
 
 /// Reads `[joints]`; every key is optional. The positions of the sliders' arms come from the links and the servos.
-pub(crate) fn read_joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) -> Checked<Joints> {
+pub(crate) fn read_joints(
+    root: &Section,
+    lizard: &Lizard,
+    servos: &[Servo; 4],
+) -> Checked<JointFriction> {
     let links = &lizard.links;
     let lengths = [links.l14, links.l19, links.l16, links.l11];
-    let frictionless = Joints {
+    let frictionless = JointFriction {
         pin_torque: 0.0,
         slider_force: 0.0,
         slider_arms: std::array::from_fn(|i| {
@@ -161,7 +165,7 @@ pub(crate) fn read_joints(root: &Section, lizard: &Lizard, servos: &[Servo; 4]) 
         return Ok(frictionless);
     }
     let section = root.section("joints", &["drag", "slider"])?;
-    Ok(Joints {
+    Ok(JointFriction {
         pin_torque: section.number_or("drag", 0.0, 0.0, 1000.0, "N mm")?,
         slider_force: section.number_or("slider", 0.0, 0.0, 20.0, "N")?,
         ..frictionless

@@ -122,7 +122,7 @@ fn a_struts_lever_arm_is_the_derivative_of_its_length() {
             };
             let slope = (length_at(0.001) - length_at(-0.001)) / 0.002f64.to_radians();
             assert!(
-                (strut.lever(leg, sweep) - slope.abs()).abs() < 1e-4,
+                (strut.lever_arm(leg, sweep) - slope.abs()).abs() < 1e-4,
                 "{leg} {slope}"
             );
             let (lag, torque) = strut.slot_end(leg, sweep);

@@ -19,7 +19,9 @@ impl Motion {
             && self.may_hold(pose)
         {
             self.stance.pose = *pose;
-            self.state = State::Holding { is_ordered: false };
+            self.state = State::Holding {
+                is_commanded: false,
+            };
             self.next_target = Some(Target::Gait(GaitId::STAND));
         }
     }
@@ -47,7 +49,9 @@ impl Motion {
         }
         self.stance.pose = stance.pose;
         self.stance.sent_pulses = stance.sent_pulses;
-        self.freeze(State::Holding { is_ordered: false });
+        self.freeze(State::Holding {
+            is_commanded: false,
+        });
         if will_stand {
             self.next_target = Some(Target::Gait(GaitId::STAND));
         } else {

@@ -157,7 +157,7 @@ fn a_move_that_arrives_at_a_pose_holds_it() {
     motion.go_to_sweeps(SWEEPS);
     motion.run(TRANSITION_FRAMES);
     assert_eq!(motion.pose(), &Pose(SWEEPS.map(Sweep)));
-    assert_eq!(motion.state, State::Holding { is_ordered: true });
+    assert_eq!(motion.state, State::Holding { is_commanded: true });
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
     let (board, banner) = finder.open_and_greet()?;
     let mut clock = Clock::start();
     let mut dialogue = Dialogue {
-        session: Session::new(clock.now(), true, file.is_some()).with_person(),
+        session: Session::new(clock.now(), true, file.is_some()).with_driver(),
         clock,
         recorder: None,
         status_line_prefix: "",
@@ -289,7 +289,7 @@ impl Dialogue {
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is back: {banner}", board.name))?;
                 let is_recorded = self.recorder.is_some();
-                self.session = Session::new(self.clock.now(), true, is_recorded).with_person();
+                self.session = Session::new(self.clock.now(), true, is_recorded).with_driver();
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),

@@ -153,7 +153,7 @@ impl Session {
     /// Marks the dialogue as one with a person. The robot could walk out of range, so `deadman`
     /// is set while it walks.
     #[must_use]
-    pub fn with_person(mut self) -> Self {
+    pub fn with_driver(mut self) -> Self {
         self.deadman = Some(Deadman::default());
         self
     }

@@ -191,11 +191,11 @@ fn draw_five_bar(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     if let Ok(solution) = robot.lizard().solve(&robot.neutral_pose()) {
         let head = &solution.head;
         let points = [
-            head.bars.left_shaft(),
+            head.five_bar.left_shaft(),
             head.left_tip,
             head.end_point,
             head.right_tip,
-            head.bars.right_shaft(),
+            head.five_bar.right_shaft(),
         ]
         .map(|p| (p.x, p.y));
         group = group.add(plot.curve(&points, DARK, 4.0));

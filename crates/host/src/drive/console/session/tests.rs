@@ -280,7 +280,7 @@ fn lines_except_status(lines: &[(u64, String)]) -> Vec<&str> {
 #[test]
 fn while_a_user_drives_deadman_is_set_and_lines_keep_the_robot_walking() {
     let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_person();
+    let mut session = Session::new(now, true, false).with_driver();
     session.queue("walk");
     let lines = run_session(&mut session, now, 5000, answer_of_robot);
     assert_eq!(lines_except_status(&lines), ["cal", "deadman 700", "walk"]);
@@ -291,7 +291,7 @@ fn while_a_user_drives_deadman_is_set_and_lines_keep_the_robot_walking() {
 #[test]
 fn deadman_is_restored_before_cal_and_set_again_afterwards() {
     let now = Instant::now();
-    let mut session = Session::new(now, false, false).with_person();
+    let mut session = Session::new(now, false, false).with_driver();
     for line in ["walk", "cal"] {
         session.queue(line);
     }
@@ -310,7 +310,7 @@ fn deadman_is_restored_before_cal_and_set_again_afterwards() {
 #[test]
 fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
     let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_person();
+    let mut session = Session::new(now, true, false).with_driver();
     let answer_with_own_deadman = |line: &str| answer_of_robot(line).replace("700", "2000");
     session.queue("walk");
     let lines = run_session(&mut session, now, 1000, answer_with_own_deadman);
@@ -342,7 +342,7 @@ fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
 #[test]
 fn a_deadman_that_an_earlier_run_left_set_is_restored_as_zero() {
     let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_person();
+    let mut session = Session::new(now, true, false).with_driver();
     session.queue("arc left");
     let answer_with_driving_deadman = |line: &str| answer_of_robot(line).replace("700", "901");
     run_session(&mut session, now, 1000, answer_with_driving_deadman);
@@ -363,7 +363,7 @@ fn a_script_sets_no_deadman() {
 #[test]
 fn no_gait_starts_before_the_robot_has_confirmed_its_deadman() {
     let now = Instant::now();
-    let mut session = Session::new(now, false, false).with_person();
+    let mut session = Session::new(now, false, false).with_driver();
     session.queue("walk");
     assert_eq!(session.next_line(now).as_deref(), Some("cal"));
     session.receive("# deadman 0");
