@@ -1,6 +1,6 @@
 //! Prologues and epilogues of functions, and the calls of shared routines that replace them.
 //!
-//! A prologue pushes registers, from the lowest to r29, and may make room below them:
+//! A prologue pushes registers, from the lowest to r29, and may reserve space for variables below them:
 //!
 //! ```text
 //! push r14 .. push r29          ldi r26, 5
@@ -14,7 +14,7 @@
 //! out SPL, r28
 //! ```
 //!
-//! An epilogue removes the room, pops the registers in reverse order, and returns (`ret`).
+//! An epilogue frees the space, pops the registers in reverse order, and returns (`ret`).
 //!
 //! The routines also change r26, r0 and the flags. By the calling convention of avr-gcc and LLVM a
 //! caller does not rely on these after a call and does not pass arguments in them: arguments are in
@@ -31,9 +31,9 @@
 //! - uses no address on the stack: it has no variables on the stack and does not use the stack
 //!   pointer; or
 //! - uses only addresses of variables, whose distances from r28 are unchanged. The body accesses Y+q
-//!   within the room for the variables, or copies r28 and immediately adds a distance within that
-//!   room; and it uses r28 and r29 for nothing else. LLVM computes every address on the stack from
-//!   r28, so each access to an argument has a distance beyond the room.
+//!   within the space for the variables, or copies r28 and immediately adds a distance within that
+//!   space; and it uses r28 and r29 for nothing else. LLVM computes every address on the stack from
+//!   r28, so each access to an argument has a distance beyond the space.
 
 use object::build::elf::SymbolId;
 use object::elf;
@@ -67,8 +67,8 @@ pub struct Routines {
 pub struct Frame {
     /// The index in [`FIRST_REGISTERS`] of the routines that save all registers of the function.
     pub routine_index: usize,
-    /// Size of the room for variables on the stack, bytes.
-    pub room_bytes: u8,
+    /// Size of the local variables on the stack, bytes.
+    pub local_bytes: u8,
     /// The size of the prologue, bytes.
     pub prologue_size: u64,
     /// The offset and the size of each epilogue.
@@ -88,10 +88,10 @@ impl Frame {
         {
             return None;
         }
-        let (room, room_instruction_count) =
-            prologue_room(code, registers.len()).unwrap_or_default();
-        let has_room = room_instruction_count > 0;
-        if has_room && !registers.ends_with(&[28, 29]) {
+        let (local_bytes, reserving_count) =
+            reserved_bytes(code, registers.len()).unwrap_or_default();
+        let has_locals = reserving_count > 0;
+        if has_locals && !registers.ends_with(&[28, 29]) {
             return None;
         }
         let lowest = lowest.min(18);
@@ -100,12 +100,13 @@ impl Frame {
         let has_same_registers = registers.iter().eq(CALL_SAVED
             .iter()
             .filter(|register| is_saved_by_routine(register)));
-        let body_start = registers.len() + room_instruction_count;
+        let body_start = registers.len() + reserving_count;
         let mut epilogue_spans = Vec::new();
         let mut index = body_start;
         // Every use of the stack pointer, every push, pop and return must belong to an epilogue.
         while let Some(instruction) = code.instructions.get(index) {
-            if let Some(length) = epilogue_length(code, index, &registers, room, has_room) {
+            if let Some(length) = epilogue_length(code, index, &registers, local_bytes, has_locals)
+            {
                 let start = code.offset_of(index);
                 epilogue_spans.push((start, code.offset_of(index + length) - start));
                 index += length;
@@ -114,7 +115,7 @@ impl Frame {
                 || pushed_register(instruction.first_word).is_some()
                 || instruction.first_word == RET
                 || instruction.first_word == RETI
-                || has_room && !has_same_registers && !uses_only_variables(code, index, room)
+                || has_locals && !has_same_registers && !uses_only_locals(code, index, local_bytes)
             {
                 return None;
             } else {
@@ -123,7 +124,7 @@ impl Frame {
         }
         Some(Self {
             routine_index,
-            room_bytes: room,
+            local_bytes,
             prologue_size: code.offset_of(body_start),
             epilogues: epilogue_spans,
         })
@@ -134,7 +135,7 @@ impl Frame {
         let replacement = |offset, removed_bytes, opcode, symbol| Edit {
             offset,
             removed_bytes,
-            new_words: vec![encode_ldi_r26(self.room_bytes), opcode, 0],
+            new_words: vec![encode_ldi_r26(self.local_bytes), opcode, 0],
             references: vec![Reference {
                 offset: 2,
                 kind: elf::R_AVR_CALL,
@@ -152,12 +153,12 @@ impl Frame {
     }
 }
 
-/// Returns the room in bytes that a prologue makes below the registers, and the number of instructions that make
-/// it; `None` if no such instructions are at `index`.
-fn prologue_room(code: &Code, index: usize) -> Option<(u8, usize)> {
+/// Returns the bytes that a prologue reserves below the registers, and the number of instructions that reserve
+/// them; `None` if no such instructions are at `index`.
+fn reserved_bytes(code: &Code, index: usize) -> Option<(u8, usize)> {
     let words: Vec<u16> = code.words_from(index).take(9).collect();
     let (subtract_word, rest) = words.strip_prefix(&READ_STACK_POINTER)?.split_first()?;
-    let (room, rest, count) = match (subtract_word, rest.split_first()) {
+    let (local_bytes, rest, count) = match (subtract_word, rest.split_first()) {
         // sbiw r28
         (subtract_word, _) if subtract_word & 0xff30 == 0x9720 => {
             (subtract_word >> 2 & 0x30 | subtract_word & 0x0f, rest, 8)
@@ -169,12 +170,12 @@ fn prologue_room(code: &Code, index: usize) -> Option<(u8, usize)> {
         _ => return None,
     };
     rest.starts_with(&WRITE_STACK_POINTER)
-        .then_some((room as u8, count))
+        .then_some((local_bytes as u8, count))
 }
 
 /// True if the instruction at an index uses the frame pointer only for the variables, from Y+1 to
-/// Y+room, or does not use it.
-fn uses_only_variables(code: &Code, index: usize, room: u8) -> bool {
+/// Y + `local_bytes`, or does not use it.
+fn uses_only_locals(code: &Code, index: usize, local_bytes: u8) -> bool {
     let words: Vec<u16> = code.words_from(index).take(3).collect();
     let distance = match *words.as_slice() {
         [word, ..] if !may_use_frame_pointer(word) => return true,
@@ -202,7 +203,7 @@ fn uses_only_variables(code: &Code, index: usize, room: u8) -> bool {
         }
         _ => return false,
     };
-    (1..=u16::from(room)).contains(&distance)
+    (1..=u16::from(local_bytes)).contains(&distance)
 }
 
 /// Returns the number of instructions of the epilogue at an index; `None` if no epilogue that matches the
@@ -211,20 +212,20 @@ fn epilogue_length(
     code: &Code,
     index: usize,
     registers: &[u8],
-    room: u8,
-    has_room: bool,
+    local_bytes: u8,
+    has_locals: bool,
 ) -> Option<usize> {
     let mut words = code.words_from(index).peekable();
     let mut count = 0;
-    if has_room {
-        let room_word = u16::from(room);
-        let negative_room = room_word.wrapping_neg();
+    if has_locals {
+        let local_word = u16::from(local_bytes);
+        let negated_word = local_word.wrapping_neg();
         let add_word = words.next()?;
         count += 1;
-        if add_word != 0x9620 | room_word << 2 & 0xc0 | room_word & 0x0f || room > 63 {
+        if add_word != 0x9620 | local_word << 2 & 0xc0 | local_word & 0x0f || local_bytes > 63 {
             // subi r28 and sbci r29, instead of adiw r28
             let expected_high = 0x40d0 | 0x0f0f;
-            if add_word != 0x50c0 | negative_room << 4 & 0x0f00 | negative_room & 0x0f
+            if add_word != 0x50c0 | negated_word << 4 & 0x0f00 | negated_word & 0x0f
                 || words.next()? != expected_high
             {
                 return None;
