@@ -29,7 +29,7 @@ pub struct Crossing {
 }
 
 impl Crossing {
-    /// Finds the crossing of a gait from its displacement in one cycle. The measurement begins after `unmeasured_cycles`.
+    /// Finds the crossing of a gait from its displacement in one cycle. Measuring begins after `unmeasured_cycles`.
     pub fn of(robot: &Robot, cycle_displacement: Displacement, unmeasured_cycles: u32) -> Self {
         let feet = robot.ground().feet.positions([0.0; 4]);
         let foot_distances_along = |place: Place, heading_deg: f64| {

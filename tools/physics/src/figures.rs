@@ -35,7 +35,7 @@ impl From<Travel> for Displacement {
 
 /// The displacements in one cycle that the contact model and MuJoCo compute.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Answers {
+pub struct Results {
     /// The contact model's displacement. `None` if two feet pull against the other two: then the result depends on
     /// the smallest difference between the pads.
     pub model: Option<Displacement>,
@@ -47,14 +47,14 @@ pub struct Answers {
 const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
 /// The allowed difference with one foot too long on soft leaves.
 const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
-/// The allowed difference with one foot too long on stiff leaves, where a few hundredths of a mm decide which feet stick.
+/// The allowed difference with one foot too long on stiff leaves, where some hundredths of a mm decide which feet stick.
 const STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
 /// The displacement in the model, mm and deg, below which MuJoCo may differ by [`STANDSTILL_TOLERANCE_MM`]. The robot
 /// then moves nearly equally fast in both directions, so the result depends on inertia.
 const STANDSTILL_LIMITS: (f64, f64) = (1.0, 0.5);
 const STANDSTILL_TOLERANCE_MM: f64 = 3.5;
 
-impl Answers {
+impl Results {
     /// Returns the allowed difference between MuJoCo and the model, mm and deg.
     pub fn allowed_difference(&self, case: Case) -> (f64, f64) {
         let (mm, share, deg) = match case.feet {
@@ -83,10 +83,10 @@ impl Answers {
     }
 }
 
-/// The answers by robot, gait and case.
+/// The results by robot, gait and case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Figures(BTreeMap<String, BTreeMap<String, BTreeMap<String, Answers>>>);
+pub struct Figures(BTreeMap<String, BTreeMap<String, BTreeMap<String, Results>>>);
 
 impl Figures {
     /// Returns the figures stored in `figures.json`.
@@ -106,16 +106,16 @@ impl Figures {
         format_nested_blocks(&self.0)
     }
 
-    /// Returns the answers for a robot's gait in a case; `None` if none are stored.
-    pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&Answers> {
+    /// Returns the results for a robot's gait in a case; `None` if none are stored.
+    pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&Results> {
         self.0.get(robot)?.get(gait)?.get(&case.to_string())
     }
 
-    /// Stores the answers for a robot's gait in a case.
-    pub fn store(&mut self, robot: &str, gait: &str, case: Case, answers: Answers) {
+    /// Stores the results for a robot's gait in a case.
+    pub fn store(&mut self, robot: &str, gait: &str, case: Case, results: Results) {
         let gaits = self.0.entry(robot.to_owned()).or_default();
         let cases = gaits.entry(gait.to_owned()).or_default();
-        cases.insert(case.to_string(), answers);
+        cases.insert(case.to_string(), results);
     }
 
     /// Returns the number of walks.

@@ -9,7 +9,7 @@ use lizard_robot::{CheckedGait, Ground, Robot, Stance};
 
 use crate::case::Legs;
 use crate::crate_folder;
-use crate::figures::{Answers, Displacement};
+use crate::figures::{Displacement, Results};
 use crate::mujoco::{Jobs, MujocoError};
 
 /// The name of the robot's file.
@@ -24,8 +24,8 @@ pub const GAITS: [(&str, bool); 5] = [
     ("left", true),
     ("arc-left", false),
 ];
-/// The largest friction ratio at which the model and MuJoCo must agree on a gait against the grain. Above this ratio, the pads
-/// that push have hardly more friction than the pad that returns, so the result depends on inertia, which the model
+/// The largest friction ratio at which the model and MuJoCo must agree on a gait against the grain. Above this ratio, the
+/// pads that push have hardly more friction than the pad that returns, so the result depends on inertia, which the model
 /// ignores.
 const MAX_RATIO_AGAINST: f64 = 1.5;
 /// An allowed difference between MuJoCo and the model in a cycle. The larger of `mm` and `share` is the bound of the
@@ -45,14 +45,14 @@ const BOUND: Bound = Bound {
 /// The time that a gait needs to accelerate the body from rest, s. Then the motion repeats from cycle to cycle.
 const SETTLING_S: f64 = 1.5;
 
-/// The answers by gait, in the order of [`RATIOS`].
-pub type GrainAnswers = BTreeMap<String, Vec<Answers>>;
+/// The results by gait, in the order of [`RATIOS`].
+pub type GrainResults = BTreeMap<String, Vec<Results>>;
 
-/// Returns the answers stored in `grains.json`.
+/// Returns the results stored in `grains.json`.
 ///
 /// # Panics
 /// If `grains.json` does not have the format of [`to_json`].
-pub fn stored() -> GrainAnswers {
+pub fn stored() -> GrainResults {
     serde_json::from_str(include_str!("../grains.json"))
         .expect("grains.json has the expected format")
 }
@@ -61,18 +61,18 @@ pub fn stored() -> GrainAnswers {
 ///
 /// # Panics
 /// Never: names and numbers can always be written as JSON.
-pub fn to_json(grains: &GrainAnswers) -> String {
-    let gaits = grains.iter().map(|(gait, answers)| {
-        let lines = answers
+pub fn to_json(grains: &GrainResults) -> String {
+    let gaits = grains.iter().map(|(gait, results)| {
+        let lines = results
             .iter()
-            .map(|answers| serde_json::to_string(answers).expect("numbers can be written as JSON"));
+            .map(|results| serde_json::to_string(results).expect("numbers can be written as JSON"));
         format!("{gait:?}: [\n{}\n]", lines.collect::<Vec<_>>().join(",\n"))
     });
     format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
 }
 
 /// Returns the model's displacement with level feet; `None` if two feet pull against the other two, so that the model
-/// has no answer.
+/// has no result.
 pub fn model_displacement(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
     let ground = Ground {
         stance: Stance {
@@ -86,14 +86,14 @@ pub fn model_displacement(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Opti
     is_decided.then(|| gait.simulate_cycle(&ground).travel.into())
 }
 
-/// Computes the answers of the model and MuJoCo for every gait and ratio.
+/// Computes the results of the model and MuJoCo for every gait and ratio.
 ///
 /// # Errors
-/// Fails if MuJoCo gives no answer.
+/// Fails if MuJoCo gives no result.
 ///
 /// # Panics
 /// If the robot does not have the gaits.
-pub fn measure(robot: &Robot) -> Result<GrainAnswers, MujocoError> {
+pub fn measure(robot: &Robot) -> Result<GrainResults, MujocoError> {
     let assembly = Assembly::new(robot);
     let walk_name = |gait: &str, index: usize| format!("{gait}-{index}");
     let gaits = GAITS.map(|(name, _)| robot.gait(name).expect("the robot has this gait"));
@@ -105,14 +105,14 @@ pub fn measure(robot: &Robot) -> Result<GrainAnswers, MujocoError> {
     jobs.add(&assembly, scenes.map(|scene| (Legs::Rigid, scene)))?;
     let by_mujoco = jobs.start()?.wait()?;
     let grains = gaits.iter().map(|gait| {
-        let answers = RATIOS
+        let results = RATIOS
             .into_iter()
             .enumerate()
-            .map(|(index, ratio)| Answers {
+            .map(|(index, ratio)| Results {
                 model: model_displacement(robot, gait, ratio),
                 mujoco: by_mujoco[&walk_name(gait.name(), index)],
             });
-        (gait.name().to_owned(), answers.collect())
+        (gait.name().to_owned(), results.collect())
     });
     Ok(grains.collect())
 }
@@ -122,11 +122,11 @@ pub(crate) fn settling_cycle_count(gait: &CheckedGait) -> u32 {
     (SETTLING_S / gait.period()).ceil() as u32
 }
 
-/// Returns the answers of a gait at the ratio in the robot's file.
-pub(crate) fn answers_at_own_ratio(answers: &[Answers]) -> Answers {
+/// Returns the results of a gait at the ratio in the robot's file.
+pub(crate) fn results_at_own_ratio(results: &[Results]) -> Results {
     let own_ratio = crate::load_robot(ROBOT).ground().friction_ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own_ratio);
-    answers[index.expect("the file's ratio is one of the table's")]
+    results[index.expect("the file's ratio is one of the table's")]
 }
 
 fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> Scene {
@@ -141,13 +141,15 @@ fn scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64) -> S
     }
 }
 
-/// Returns a message for each answer of MuJoCo that is too far from the model's.
-pub fn disagreements(grains: &GrainAnswers) -> Vec<String> {
+/// Returns a message for each result of MuJoCo that is too far from the model's.
+pub fn disagreements(grains: &GrainResults) -> Vec<String> {
     let mut messages = Vec::new();
     for (gait, is_against_grain) in GAITS {
-        for (ratio, answers) in RATIOS.into_iter().zip(&grains[gait]) {
-            let Some(model) = answers.model else { continue };
-            let (distance_error, turn_error) = answers.mujoco.distance_to(&model);
+        for (ratio, results) in RATIOS.into_iter().zip(&grains[gait]) {
+            let Some(model) = results.model else {
+                continue;
+            };
+            let (distance_error, turn_error) = results.mujoco.distance_to(&model);
             let displacement = model.0[0].hypot(model.0[1]);
             let max_distance_error = BOUND.mm.max(BOUND.share * displacement);
             let is_too_far = distance_error > max_distance_error || turn_error > BOUND.deg;
@@ -165,7 +167,7 @@ pub fn disagreements(grains: &GrainAnswers) -> Vec<String> {
 ///
 /// # Panics
 /// If a gait is missing.
-pub fn table(robot: &Robot, grains: &GrainAnswers) -> String {
+pub fn table(robot: &Robot, grains: &GrainResults) -> String {
     let mut text = format!("{:16}", "model, MuJoCo");
     for ratio in RATIOS {
         let heading = format!("r = {ratio:.1}");
@@ -182,22 +184,22 @@ pub fn table(robot: &Robot, grains: &GrainAnswers) -> String {
         let period = robot.gait(gait).expect("the robot has this gait").period();
         let unit = if component == 0 { "mm/s" } else { "deg/s" };
         _ = write!(text, "{gait:10}{unit:>6}");
-        for answers in &grains[gait] {
+        for results in &grains[gait] {
             let speed_text = |displacement: Displacement| {
                 format!("{:+.1}", displacement.0[component] / period + 0.0)
             };
-            let model = answers.model.map_or_else(|| "-".to_owned(), speed_text);
-            _ = write!(text, "  {model:>6} {:>6}", speed_text(answers.mujoco));
+            let model = results.model.map_or_else(|| "-".to_owned(), speed_text);
+            _ = write!(text, "  {model:>6} {:>6}", speed_text(results.mujoco));
         }
         text.push('\n');
     }
     text
 }
 
-/// Writes the answers to `grains.json`.
+/// Writes the results to `grains.json`.
 ///
 /// # Errors
 /// Fails if the file cannot be written.
-pub fn store(grains: &GrainAnswers) -> std::io::Result<()> {
+pub fn store(grains: &GrainResults) -> std::io::Result<()> {
     std::fs::write(crate_folder().join("grains.json"), to_json(grains))
 }

@@ -25,7 +25,7 @@ mod walk;
 pub use case::{Case, Feet, Legs};
 pub use crossing::Crossing;
 pub use expected::expected_table;
-pub use figures::{Answers, Displacement, Figures};
+pub use figures::{Displacement, Figures, Results};
 pub use table::{displacement_table, table};
 pub use walk::{Walk, walks_of};
 

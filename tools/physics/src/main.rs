@@ -7,21 +7,21 @@ use std::process::ExitCode;
 
 use lizard_parts::Assembly;
 use lizard_physics::assumptions::{self, Assumption, AssumptionDisplacements};
-use lizard_physics::grains::{self, GrainAnswers};
+use lizard_physics::grains::{self, GrainResults};
 use lizard_physics::mujoco::{Jobs, MujocoError};
 use lizard_physics::pads::{self, PadShape, SURFACES, ShapeDisplacements};
-use lizard_physics::servos::{self, ServoAnswers, Variant, servos_table};
+use lizard_physics::servos::{self, ServoResults, Variant, servos_table};
 use lizard_physics::surface::{self, Surface, SurfaceDisplacements, surfaces_table};
 use lizard_physics::text::{format_blocks, format_lines};
 use lizard_physics::{
-    Answers, Displacement, Figures, Legs, ROBOT_NAMES, Walk, crate_folder, load_robot, table,
+    Displacement, Figures, Legs, ROBOT_NAMES, Results, Walk, crate_folder, load_robot, table,
     walks_of,
 };
 use lizard_robot::Robot;
 
 /// The largest difference from a stored displacement, mm and deg, that is not reported as a change.
 const TOLERANCES: (f64, f64) = (0.6, 0.4);
-/// The message for a walk without a stored answer.
+/// The message for a walk without a stored result.
 const NOT_STORED: &str = "no figures are stored; `make physics WRITE=1` stores these";
 /// Prefixes of the names of walks: on other floors, with other servos, with other assumptions, with other pads.
 const SURFACE_PREFIX: &str = "surface";
@@ -70,8 +70,8 @@ fn walk_name(prefix: &str, index: usize) -> String {
     format!("{prefix}-{index}")
 }
 
-/// Simulates every `one_in`-th walk and compares the answers with the stored ones; with `None`, simulates all walks and
-/// stores their answers. Returns a message for each fault.
+/// Simulates every `one_in`-th walk and compares the results with the stored ones; with `None`, simulates all walks and
+/// stores their results. Returns a message for each fault.
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (is_writing, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
     let robots: Vec<(&str, Robot)> = ROBOT_NAMES.map(|name| (name, load_robot(name))).into();
@@ -169,21 +169,21 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (mut figures, mut faults) = (Figures::default(), Vec::new());
     for ((robot_name, robot), walks) in robots.iter().zip(&walks_by_robot) {
         for (index, walk) in walks.iter().enumerate() {
-            let answers = Answers {
+            let results = Results {
                 model: walk.model_displacement(robot),
                 mujoco: by_mujoco[&walk_name(robot_name, index)],
             };
-            let mut messages: Vec<String> = answers.disagreement(walk.case).into_iter().collect();
+            let mut messages: Vec<String> = results.disagreement(walk.case).into_iter().collect();
             if !is_writing {
                 messages.extend(describe_changes(
                     stored_figures.get(robot_name, &walk.gait, walk.case),
-                    &answers,
+                    &results,
                 ));
             }
             let describe =
                 |message| format!("{robot_name}: {} ({}): {message}", walk.gait, walk.case);
             faults.extend(messages.into_iter().map(describe));
-            figures.store(robot_name, &walk.gait, walk.case, answers);
+            figures.store(robot_name, &walk.gait, walk.case, results);
         }
         println!("\n{}", table(robot_name, robot, &figures));
     }
@@ -225,23 +225,23 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             surfaces_table(robot, &stored_figures, &surfaces)
         );
     }
-    let (stored_servos, mut by_servos) = (servos::stored(), ServoAnswers::new());
+    let (stored_servos, mut by_servos) = (servos::stored(), ServoResults::new());
     for (index, (variant, gait)) in servo_walks.iter().enumerate() {
-        let answers = Answers {
+        let results = Results {
             model: Some(variant.model_displacement(gait)),
             mujoco: by_mujoco[&walk_name(SERVOS_PREFIX, index)],
         };
-        let mut messages: Vec<String> = variant.disagreement(gait, &answers).into_iter().collect();
+        let mut messages: Vec<String> = variant.disagreement(gait, &results).into_iter().collect();
         if !is_writing {
-            let stored_answers = stored_servos
+            let stored_results = stored_servos
                 .get(variant.name)
                 .and_then(|by_gait| by_gait.get(*gait));
-            messages.extend(describe_changes(stored_answers, &answers));
+            messages.extend(describe_changes(stored_results, &results));
         }
         let describe = |message| format!("paper, {}: {gait}: {message}", variant.name);
         faults.extend(messages.into_iter().map(describe));
         let by_gait = by_servos.entry(variant.name.to_owned()).or_default();
-        by_gait.insert((*gait).to_owned(), answers);
+        by_gait.insert((*gait).to_owned(), results);
     }
     println!("\n{}", servos_table(&by_servos));
     let mut by_assumption = AssumptionDisplacements::new();
@@ -271,15 +271,15 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let grain_robot = load_robot(grains::ROBOT);
     // A shortened run (`--one-in`) leaves out the pads with a grain.
     if one_in == 1 {
-        let grain_answers = grains::measure(&grain_robot)?;
+        let grain_results = grains::measure(&grain_robot)?;
         println!(
             "\nrobots/grain.toml\n{}",
-            grains::table(&grain_robot, &grain_answers)
+            grains::table(&grain_robot, &grain_results)
         );
-        faults.extend(grains::disagreements(&grain_answers));
+        faults.extend(grains::disagreements(&grain_results));
         match is_writing {
-            true => grains::store(&grain_answers)?,
-            false => faults.extend(describe_grain_changes(&grains::stored(), &grain_answers)),
+            true => grains::store(&grain_results)?,
+            false => faults.extend(describe_grain_changes(&grains::stored(), &grain_results)),
         }
     }
     if is_writing {
@@ -335,13 +335,13 @@ impl UnevenWalk {
     }
 }
 
-/// Returns a message for each answer on pads with a grain that differs from the stored one.
-fn describe_grain_changes(stored: &GrainAnswers, current: &GrainAnswers) -> Vec<String> {
-    let messages = current.iter().flat_map(|(gait, answers)| {
+/// Returns a message for each result on pads with a grain that differs from the stored one.
+fn describe_grain_changes(stored: &GrainResults, current: &GrainResults) -> Vec<String> {
+    let messages = current.iter().flat_map(|(gait, results)| {
         let stored = stored.get(gait).map_or(&[][..], Vec::as_slice);
-        let pairs = answers.iter().zip(grains::RATIOS).enumerate();
-        pairs.flat_map(move |(index, (answers, ratio))| {
-            let changes = describe_changes(stored.get(index), answers);
+        let pairs = results.iter().zip(grains::RATIOS).enumerate();
+        pairs.flat_map(move |(index, (results, ratio))| {
+            let changes = describe_changes(stored.get(index), results);
             let describe = move |change| format!("grain: {gait} (r {ratio}): {change}");
             changes.into_iter().map(describe)
         })
@@ -374,12 +374,12 @@ fn describe_displacement_changes(
     messages.collect()
 }
 
-/// Returns a message for each of the two answers, the model's and MuJoCo's, that differs from the stored one.
-fn describe_changes(stored: Option<&Answers>, current: &Answers) -> Vec<String> {
+/// Returns a message for each of the two results, the model's and MuJoCo's, that differs from the stored one.
+fn describe_changes(stored: Option<&Results>, current: &Results) -> Vec<String> {
     let Some(stored) = stored else {
         return vec![NOT_STORED.to_owned()];
     };
-    // If two feet pull against two, the model has no answer, and MuJoCo's answer differs between machines.
+    // If two feet pull against two, the model has no result, and MuJoCo's result differs between machines.
     let (Some(stored_model), Some(current_model)) = (stored.model, current.model) else {
         return Vec::new();
     };

@@ -8,7 +8,7 @@ use lizard_parts::{Assembly, Course, Scene};
 use lizard_robot::Robot;
 
 use crate::crate_folder;
-use crate::figures::{Answers, Displacement};
+use crate::figures::{Displacement, Results};
 
 /// The gaits, each with the index of the component of the displacement that is compared: 0 for the distance forward, 2
 /// for the turn.
@@ -158,10 +158,10 @@ impl Variant {
     }
 
     /// Returns a message if the model differs from MuJoCo too much in a gait.
-    pub fn disagreement(&self, gait: &str, answers: &Answers) -> Option<String> {
+    pub fn disagreement(&self, gait: &str, results: &Results) -> Option<String> {
         let (_, component) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] =
-            [answers.model?, answers.mujoco].map(|displacement| displacement.0[component]);
+            [results.model?, results.mujoco].map(|displacement| displacement.0[component]);
         let error = model / mujoco - 1.0;
         (error.abs() > self.max_deviation_share(gait)).then(|| {
             let percent = 100.0 * error;
@@ -170,20 +170,20 @@ impl Variant {
     }
 }
 
-/// The answers by variant and gait.
-pub type ServoAnswers = BTreeMap<String, BTreeMap<String, Answers>>;
+/// The results by variant and gait.
+pub type ServoResults = BTreeMap<String, BTreeMap<String, Results>>;
 
-/// Returns the answers stored in `servos.json`.
+/// Returns the results stored in `servos.json`.
 ///
 /// # Panics
 /// If `servos.json` does not have the format of [`crate::text::format_blocks`].
-pub fn stored() -> ServoAnswers {
+pub fn stored() -> ServoResults {
     serde_json::from_str(include_str!("../servos.json"))
         .expect("servos.json has the expected format")
 }
 
-/// Returns the table of all variants in Markdown, with a dash for a missing answer.
-pub fn servos_table(servos: &ServoAnswers) -> String {
+/// Returns the table of all variants in Markdown, with a dash for a missing result.
+pub fn servos_table(servos: &ServoResults) -> String {
     let headings = GAITS.map(|(gait, component)| {
         let unit = if component == 2 { "deg" } else { "mm" };
         format!(" {gait}, {unit} |")
@@ -193,11 +193,11 @@ pub fn servos_table(servos: &ServoAnswers) -> String {
     for variant in Variant::ALL {
         _ = write!(table, "| {} |", variant.name);
         for (gait, component) in GAITS {
-            let answers = servos
+            let results = servos
                 .get(variant.name)
                 .and_then(|by_gait| by_gait.get(gait));
-            let pair = answers.and_then(|answers| {
-                Some((answers.model?.0[component], answers.mujoco.0[component]))
+            let pair = results.and_then(|results| {
+                Some((results.model?.0[component], results.mujoco.0[component]))
             });
             _ = match pair {
                 Some((model, mujoco)) => write!(table, " {model:.1}, {mujoco:.1} |"),

@@ -49,7 +49,7 @@ pub fn walking_gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacemen
             .map(|(gait, _)| {
                 (
                     gait.to_owned(),
-                    grains::answers_at_own_ratio(&stored[gait]).mujoco,
+                    grains::results_at_own_ratio(&stored[gait]).mujoco,
                 )
             })
             .into();
@@ -59,17 +59,17 @@ pub fn walking_gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacemen
         .gaits()
         .iter()
         .filter(|gait| gait.has_movement());
-    let level_answers = moving.map(|gait| {
-        let answers = figures.get(robot, gait.name(), Case::ALL[0]);
+    let level_results = moving.map(|gait| {
+        let results = figures.get(robot, gait.name(), Case::ALL[0]);
         (
             gait.name().to_owned(),
-            *answers.expect("figures.json has an answer"),
+            *results.expect("figures.json has the result"),
         )
     });
-    // If two feet pull against the other two, the contact model has no answer and the gait has no definite path.
-    level_answers
-        .filter(|(_, answers)| answers.model.is_some())
-        .map(|(gait, answers)| (gait, answers.mujoco))
+    // If two feet pull against the other two, the contact model has no result and the gait has no definite path.
+    level_results
+        .filter(|(_, results)| results.model.is_some())
+        .map(|(gait, results)| (gait, results.mujoco))
         .filter(|(_, level)| !gait_purposes(*level).is_empty())
         .collect()
 }
@@ -256,8 +256,8 @@ pub fn stored() -> SurfaceDisplacements {
 /// # Panics
 /// If no displacement of the gait is stored.
 pub fn level_displacement(figures: &Figures, gait: &str) -> Displacement {
-    let answers = figures.get("paper", gait, Case::ALL[0]);
-    answers.expect("figures.json has an answer").mujoco
+    let results = figures.get("paper", gait, Case::ALL[0]);
+    results.expect("figures.json has the result").mujoco
 }
 
 /// Gaits that are known to keep less of their displacement than required, each with its robot and surface. On pads with

@@ -78,16 +78,16 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
         }
         text = text.trim_end().to_owned() + "\n";
         for gait in moving_gait_names(robot) {
-            let Some(first_answers) = figures.get(name, gait, cases[0]) else {
+            let Some(first_results) = figures.get(name, gait, cases[0]) else {
                 continue;
             };
-            for component in Component::of(first_answers.model.unwrap_or(first_answers.mujoco)) {
+            for component in Component::of(first_results.model.unwrap_or(first_results.mujoco)) {
                 _ = write!(text, "{gait:<width$} {:>3}", component.unit());
-                for answers in cases
+                for results in cases
                     .iter()
                     .filter_map(|case| figures.get(name, gait, *case))
                 {
-                    for displacement in [answers.model, Some(answers.mujoco)] {
+                    for displacement in [results.model, Some(results.mujoco)] {
                         _ = match displacement {
                             Some(displacement) => {
                                 write!(text, "  {:>+6.1}", component.value(displacement))
@@ -117,11 +117,11 @@ fn moving_gait_names(robot: &Robot) -> impl Iterator<Item = &str> {
 pub fn displacement_table(name: &str, robot: &Robot, figures: &Figures) -> String {
     let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
-        let answers_with = |feet: Feet| {
+        let results_with = |feet: Feet| {
             let legs = Legs::Rigid;
             figures.get(name, gait.name(), Case { legs, feet })
         };
-        let (Some(level), Some(long_foot)) = (answers_with(Feet::Level), answers_with(Feet::Soft))
+        let (Some(level), Some(long_foot)) = (results_with(Feet::Level), results_with(Feet::Soft))
         else {
             continue;
         };

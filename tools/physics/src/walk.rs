@@ -14,7 +14,7 @@ pub struct Walk {
     pub gait: String,
     /// The case in which the gait is walked.
     pub case: Case,
-    /// True if the contact model has an answer: no two feet pull against the other two at any time.
+    /// True if the contact model has a result: no two feet pull against the other two at any time.
     pub is_decided: bool,
 }
 
@@ -25,7 +25,7 @@ impl Walk {
         (self.case.legs, scene)
     }
 
-    /// Returns the contact model's displacement; `None` if the model has no answer.
+    /// Returns the contact model's displacement; `None` if the model has no result.
     ///
     /// # Panics
     /// If the robot has no such gait.
@@ -36,7 +36,7 @@ impl Walk {
     }
 }
 
-/// Returns the walks of a robot: every gait that moves, in every case. A gait for which the contact model has no answer
+/// Returns the walks of a robot: every gait that moves, in every case. A gait for which the contact model has no result
 /// is walked only in the first case.
 pub fn walks_of(robot: &Robot) -> Vec<Walk> {
     let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());

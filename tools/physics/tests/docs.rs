@@ -214,11 +214,11 @@ fn every_walk_is_stored_and_close_to_the_model() {
     for name in ROBOT_NAMES {
         let robot = load_robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
-            let answers_for = |case| figures.get(name, gait.name(), case);
+            let results_for = |case| figures.get(name, gait.name(), case);
             let is_decided =
-                answers_for(Case::ALL[0]).is_some_and(|answers| answers.model.is_some());
+                results_for(Case::ALL[0]).is_some_and(|results| results.model.is_some());
             for case in Case::ALL {
-                let Some(answers) = answers_for(case) else {
+                let Some(results) = results_for(case) else {
                     assert!(
                         !is_decided && case != Case::ALL[0],
                         "{name}: {}",
@@ -226,9 +226,9 @@ fn every_walk_is_stored_and_close_to_the_model() {
                     );
                     continue;
                 };
-                assert_eq!(answers.disagreement(case), None, "{name}: {}", gait.name());
+                assert_eq!(results.disagreement(case), None, "{name}: {}", gait.name());
                 assert_eq!(
-                    answers.model.is_some(),
+                    results.model.is_some(),
                     is_decided,
                     "{name}: {}",
                     gait.name()
@@ -241,15 +241,15 @@ fn every_walk_is_stored_and_close_to_the_model() {
 }
 
 #[test]
-fn the_stored_answers_of_the_model_are_up_to_date() {
+fn the_stored_results_of_the_model_are_up_to_date() {
     let (figures, robot) = (Figures::stored(), load_robot("paper"));
     let mut count = 0;
     for walk in walks_of(&robot) {
-        let answers = figures
+        let results = figures
             .get("paper", &walk.gait, walk.case)
             .expect("the walk is stored");
-        assert_eq!(answers.model.is_some(), walk.is_decided, "{}", walk.gait);
-        let (Some(stored), Some(computed)) = (answers.model, walk.model_displacement(&robot))
+        assert_eq!(results.model.is_some(), walk.is_decided, "{}", walk.gait);
+        let (Some(stored), Some(computed)) = (results.model, walk.model_displacement(&robot))
         else {
             continue;
         };
@@ -278,8 +278,8 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
             .iter()
             .filter(|gait| gait.has_movement())
         {
-            let answers_for = |feet| figures.get(name, gait.name(), case_with(feet));
-            let (Some(level), Some(long)) = (answers_for(Feet::Level), answers_for(Feet::Soft))
+            let results_for = |feet| figures.get(name, gait.name(), case_with(feet));
+            let (Some(level), Some(long)) = (results_for(Feet::Level), results_for(Feet::Soft))
             else {
                 continue;
             };

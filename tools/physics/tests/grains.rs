@@ -2,14 +2,14 @@
 //!
 //! With `BLESS_PHYSICS=1`, as in `make docs`, the speeds are written into docs/gaits.md and robots/grain.toml.
 
-use lizard_physics::grains::{self, GAITS, GrainAnswers, RATIOS};
+use lizard_physics::grains::{self, GAITS, GrainResults, RATIOS};
 use lizard_physics::text::check_block;
 use lizard_physics::{crate_folder, load_robot};
 
-/// Returns the speeds of a gait at a friction ratio: by the model, if it has an answer, and by MuJoCo. `component` is
+/// Returns the speeds of a gait at a friction ratio: by the model, if it has a result, and by MuJoCo. `component` is
 /// the index in the displacement: 0 for mm/s ahead, 2 for deg/s of turn.
 fn speeds_by_model_and_mujoco(
-    stored: &GrainAnswers,
+    stored: &GrainResults,
     gait: &str,
     ratio: f64,
     component: usize,
@@ -19,8 +19,8 @@ fn speeds_by_model_and_mujoco(
         .expect("the robot has this gait")
         .period();
     let index = RATIOS.iter().position(|known_ratio| *known_ratio == ratio);
-    let answers = stored[gait][index.expect("the ratio is one of the table's")];
-    let displacements = answers.model.into_iter().chain([answers.mujoco]);
+    let results = stored[gait][index.expect("the ratio is one of the table's")];
+    let displacements = results.model.into_iter().chain([results.mujoco]);
     displacements
         .map(|displacement| displacement.0[component] / period)
         .collect()
@@ -37,7 +37,7 @@ fn the_page_and_the_robots_file_have_the_speeds_by_the_model_and_by_mujoco() {
 }
 
 #[test]
-fn every_answer_is_stored_in_the_format_that_is_written_and_close_to_the_model() {
+fn every_result_is_stored_in_the_format_that_is_written_and_close_to_the_model() {
     let stored = grains::stored();
     let text = std::fs::read_to_string(crate_folder().join("grains.json"))
         .expect("grains.json is readable");
@@ -49,14 +49,14 @@ fn every_answer_is_stored_in_the_format_that_is_written_and_close_to_the_model()
 }
 
 #[test]
-fn the_stored_answers_of_the_model_are_up_to_date() {
+fn the_stored_results_of_the_model_are_up_to_date() {
     let (stored, robot) = (grains::stored(), load_robot(grains::ROBOT));
     for (name, _) in GAITS {
         let gait = robot.gait(name).expect("the robot has this gait");
-        for (ratio, answers) in RATIOS.into_iter().zip(&stored[name]) {
+        for (ratio, results) in RATIOS.into_iter().zip(&stored[name]) {
             let current = grains::model_displacement(&robot, gait, ratio);
-            assert_eq!(current.is_some(), answers.model.is_some(), "{name} {ratio}");
-            let Some((stored_model, current_model)) = answers.model.zip(current) else {
+            assert_eq!(current.is_some(), results.model.is_some(), "{name} {ratio}");
+            let Some((stored_model, current_model)) = results.model.zip(current) else {
                 continue;
             };
             let (mm, deg) = stored_model.distance_to(&current_model);

@@ -9,13 +9,13 @@ use lizard_physics::text::{check_block, format_blocks};
 #[test]
 fn a_gait_with_lagging_servos_loses_as_much_in_the_model_as_in_mujoco() {
     let stored = stored();
-    let mut answer_count = 0;
+    let mut result_count = 0;
     for variant in Variant::ALL {
         for (gait, component) in GAITS {
-            let answers = stored[variant.name][gait];
+            let results = stored[variant.name][gait];
             let name = variant.name;
-            assert_eq!(variant.disagreement(gait, &answers), None, "{name}, {gait}");
-            let stored_displacement = answers.model.expect("the model has a displacement");
+            assert_eq!(variant.disagreement(gait, &results), None, "{name}, {gait}");
+            let stored_displacement = results.model.expect("the model has a displacement");
             let displacement = variant.model_displacement(gait);
             let error = (stored_displacement.0[component] - displacement.0[component]).abs();
             assert!(
@@ -23,17 +23,17 @@ fn a_gait_with_lagging_servos_loses_as_much_in_the_model_as_in_mujoco() {
                 "{name}, {gait}: {stored_displacement:?} {displacement:?}"
             );
             // Half of MuJoCo's displacement must be reported as a disagreement.
-            let mut halved_answers = answers;
-            halved_answers.mujoco.0[component] /= 2.0;
+            let mut halved_results = results;
+            halved_results.mujoco.0[component] /= 2.0;
             assert!(
-                variant.disagreement(gait, &halved_answers).is_some(),
+                variant.disagreement(gait, &halved_results).is_some(),
                 "{name}, {gait}"
             );
-            answer_count += 1;
+            result_count += 1;
         }
     }
     let stored_count: usize = stored.values().map(std::collections::BTreeMap::len).sum();
-    assert_eq!(stored_count, answer_count, "and no others are stored");
+    assert_eq!(stored_count, result_count, "and no others are stored");
     let file = std::fs::read_to_string(crate_folder().join("servos.json"))
         .expect("servos.json is readable");
     assert_eq!(file, format_blocks(&stored));
