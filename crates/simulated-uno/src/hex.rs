@@ -38,7 +38,7 @@ impl Image {
     }
 }
 
-/// Adds the bytes of a line to the last segment if their address is the end of that segment, otherwise as a new segment.
+/// Adds a line's bytes to the last segment if their address is the segment's end, otherwise as a new segment.
 fn append(
     segments: &mut Vec<(u32, Vec<u8>)>,
     address: u64,

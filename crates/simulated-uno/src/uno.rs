@@ -15,9 +15,9 @@ pub enum Fidelity {
     /// Stock simavr 1.6: entry into an interrupt takes no time, received bytes are never lost, the two bytes of a
     /// 16-bit register do not share a TEMP byte.
     Stock,
-    /// simavr corrected to match the ATmega328P's data sheet: interrupt entry in 4 cycles (8 from sleep), a two-byte receive
-    /// buffer with overrun, 10-bit frames, Timer1's TEMP byte, interrupt flags that are cleared one by one; EEPROM,
-    /// ADC, watchdog, resets and brown-out with their times and limits.
+    /// simavr corrected to match the ATmega328P's data sheet: interrupt entry in 4 cycles (8 from sleep), a two-byte
+    /// receive buffer with overrun, 10-bit frames, Timer1's TEMP byte, interrupt flags that are cleared one by one;
+    /// EEPROM, ADC, watchdog, resets and brown-out with their times and limits.
     #[default]
     DataSheet,
 }

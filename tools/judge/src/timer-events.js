@@ -1,6 +1,6 @@
-// avr8js updates a timer at each of its counts, which takes nearly all of the simulation's time. Here a timer is updated
-// only when its next flag is due, and before the program reads or changes it. Only the speed differs; a test compares
-// both ways.
+// avr8js updates a timer at each of its counts, which takes nearly all of the simulation's time. Here a timer is
+// updated only when its next flag is due, and before the program reads or changes it. Only the speed differs; a test
+// compares both ways.
 
 /** Returns the cycle at which a running timer sets its next flag or wraps. */
 function nextFlagCycle(timer) {

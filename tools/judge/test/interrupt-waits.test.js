@@ -4,8 +4,8 @@ import test from 'node:test';
 import { delayInterruptAfterEnable } from '../src/corrections/interrupt-waits.js';
 import { fixedMessage, runProgram } from './program.js';
 
-// Both compare interrupts of timer 0 are pending when interrupts are switched on. Then main counts in r16, and the handlers
-// copy that count to r20 and r21.
+// Both compare interrupts of timer 0 are pending when interrupts are switched on. Then main counts in r16, and the
+// handlers copy that count to r20 and r21.
 const program = (switchOn) => `
     jmp main
     _LOC 0x38         ; TIMER0_COMPA

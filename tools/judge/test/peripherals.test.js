@@ -1,5 +1,5 @@
-// Peripherals other than the timers and the serial line: behaviour that firmware may rely on in this simulation, and cases that
-// are not simulated.
+// Peripherals other than the timers and the serial line: behaviour that firmware may rely on in this simulation, and
+// cases that are not simulated.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 

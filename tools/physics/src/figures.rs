@@ -47,7 +47,7 @@ pub struct Results {
 const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
 /// The allowed difference with one foot too long on soft leaves.
 const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
-/// The allowed difference with one foot too long on stiff leaves, where some hundredths of a mm decide which feet stick.
+/// The allowed difference with one foot too long on stiff leaves, where hundredths of a mm decide which feet stick.
 const STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
 /// The displacement in the model, mm and deg, below which MuJoCo may differ by [`STANDSTILL_TOLERANCE_MM`]. The robot
 /// then moves nearly equally fast in both directions, so the result depends on inertia.

@@ -24,9 +24,9 @@ pub const GAITS: [(&str, bool); 5] = [
     ("left", true),
     ("arc-left", false),
 ];
-/// The largest friction ratio at which the model and MuJoCo must agree on a gait against the grain. Above this ratio, the
-/// pads that push have hardly more friction than the pad that returns, so the result depends on inertia, which the model
-/// ignores.
+/// The largest friction ratio at which the model and MuJoCo must agree on a gait against the grain. Above this ratio,
+/// the pads that push have hardly more friction than the pad that returns, so the result depends on inertia, which the
+/// model ignores.
 const MAX_RATIO_AGAINST: f64 = 1.5;
 /// An allowed difference between MuJoCo and the model in a cycle. The larger of `mm` and `share` is the bound of the
 /// distance.

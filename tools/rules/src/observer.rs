@@ -210,7 +210,7 @@ impl Observer {
         !self.permission.is_granted
     }
 
-    /// The time at which a fault stopped the robot; `None` if no fault has occurred, or if a command has ended the stop.
+    /// The time at which a fault stopped the robot; `None` without a fault, or if a command has ended the stop.
     pub const fn stopped_since(&self) -> Option<Time> {
         self.reports.stopped_at
     }

@@ -1,4 +1,4 @@
-//! The observer's coarse state, which is equal for equivalent states, so that the model checker explores them only once.
+//! The observer's coarse state, equal for equivalent states, so that the model checker explores them only once.
 
 use std::fmt;
 

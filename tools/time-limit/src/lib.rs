@@ -2,8 +2,8 @@
 //! no answer, and the run of all tests would hang, too. Here every wait has a limit, after which the test fails with
 //! a message that names the missing event.
 //!
-//! The limit is not a measure of speed: a machine may be busy, and only a test that hangs should fail. All waits use the
-//! same limit, [`LIMIT`]. Do not use it outside of tests, and do not use it to assert that something is fast.
+//! The limit is not a measure of speed: a machine may be busy, and only a test that hangs should fail. All waits use
+//! the same limit, [`LIMIT`]. Do not use it outside of tests, and do not use it to assert that something is fast.
 //!
 //! ```
 //! use lizard_time_limit::LIMIT;

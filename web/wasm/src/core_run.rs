@@ -27,7 +27,7 @@ pub struct CoreFrame {
 /// A robot's core in operation.
 pub struct CoreRun {
     running_robot: RunningRobot,
-    /// Voltage at the measuring pin, behind the divider, while the servos' rail is healthy, mV; 0 if the rail is not measured.
+    /// Voltage at the measuring pin, behind the divider, while the servos' rail is healthy, mV; 0 without a rail.
     rail_pin_mv: f64,
 }
 

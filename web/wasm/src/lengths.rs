@@ -27,8 +27,8 @@ pub struct Lengths {
     refusal: Option<Refused>,
     /// The accepted lengths nearest to the requested ones; `None` if not needed, not searched for, or not found.
     nearest: Option<NearestLengths>,
-    /// The requested lengths without the gait that forbids them; `None` if not needed or not searched for, or if the text
-    /// without the gait is refused, too.
+    /// The requested lengths without the gait that forbids them; `None` if not needed or not searched for, or if the
+    /// text without the gait is refused, too.
     without: Option<WithoutGait>,
 }
 

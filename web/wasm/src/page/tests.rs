@@ -81,8 +81,8 @@ fn real_servos_have_a_dead_band_and_a_limited_speed_and_ideal_ones_neither() {
     assert_near(turn_and_error(&mut page, 0), [0.0, 0.0]);
 }
 
-/// Lets the page follow two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns for the
-/// second cycle: the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
+/// Lets the page follow two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns for
+/// the second cycle: the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
 fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name));
