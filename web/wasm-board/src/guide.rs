@@ -83,15 +83,15 @@ impl Guide {
         self.0.trim(servo, change).await.map_err(error_to_js)
     }
 
-    /// Sets the scale of a servo that turned by `measured` when told to turn by `told`; returns the scale, us per deg.
+    /// Sets the scale of a servo that turned by `measured` instead of `commanded`; returns the scale, us per deg.
     #[wasm_bindgen(js_name = scaleByTurn)]
     pub async fn scale_by_turn(
         &mut self,
         servo: usize,
-        told: f64,
+        commanded: f64,
         measured: f64,
     ) -> Result<f64, JsValue> {
-        let scale = self.0.scale_by_turn(servo, told, measured).await;
+        let scale = self.0.scale_by_turn(servo, commanded, measured).await;
         scale.map_err(error_to_js)
     }
 
