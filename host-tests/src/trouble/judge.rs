@@ -36,7 +36,7 @@ fn limits_of(robot: &Robot, scenario: &Scenario) -> Limits {
     let servos = robot.servos().each_ref();
     Limits {
         // Allows a cycle of rounding at the start and at the end of a pulse, and half an angle step.
-        max_leap_cycles: servos.map(|servo| {
+        max_change_cycles: servos.map(|servo| {
             cycles_of_us(max_speed / 50.0 * servo.us_per_degree.abs().max(scale_in_scenario)) + 4
         }),
         width_ranges: servos.map(|servo| {
@@ -140,7 +140,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         let effect = received.effect;
         add(
             received.cycle,
-            Event::Order {
+            Event::MotionCommand {
                 effect,
                 is_accepted,
             },
@@ -152,7 +152,7 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
         add(line.cycle, Event::LinePrinted(start, &line.text));
     }
     for exchange in &record.exchanges {
-        let (asked_at, line) = (time_of(exchange.sent_cycle), exchange.line.as_str());
+        let (sent_at, line) = (time_of(exchange.sent_cycle), exchange.line.as_str());
         let effect = exchange.effect;
         events.push(match &exchange.answer {
             Some(Line { cycle, text, .. }) => (
@@ -160,13 +160,13 @@ pub fn events(record: &Record) -> Vec<(Time, Event<'_>)> {
                 Event::Answer {
                     line,
                     effect,
-                    asked_at,
+                    sent_at,
                     answer: text,
                 },
             ),
             None => (
-                asked_at + time_of(400 * MS),
-                Event::Unanswered(asked_at, line),
+                sent_at + time_of(400 * MS),
+                Event::Unanswered(sent_at, line),
             ),
         });
     }

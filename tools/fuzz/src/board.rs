@@ -147,7 +147,7 @@ impl Board {
             .expect("the observer has counted an answer");
         if matches!(effect, Effect::Moves | Effect::Freezes | Effect::Rests) {
             let is_accepted = Some(answer.starts_with("ok "));
-            self.observe(Event::Order {
+            self.observe(Event::MotionCommand {
                 effect,
                 is_accepted,
             });
@@ -155,7 +155,7 @@ impl Board {
         self.observe(Event::Answer {
             line,
             effect,
-            asked_at: self.now,
+            sent_at: self.now,
             answer,
         });
         self.output = output;

@@ -27,14 +27,8 @@ const INVALID_LINES: [&str; 7] = [
 ];
 
 impl Observer {
-    /// Judges the answer to a line that was sent at `asked_at`, and records the promises in it.
-    pub(crate) fn judge_answer(
-        &mut self,
-        line: &str,
-        effect: Effect,
-        asked_at: Time,
-        answer: &str,
-    ) {
+    /// Judges the answer to a line that was sent at `sent_at`, and records the promises in it.
+    pub(crate) fn judge_answer(&mut self, line: &str, effect: Effect, sent_at: Time, answer: &str) {
         let now = self.now;
         if answer.starts_with("ok gait=") {
             return self.judge_status(answer);
@@ -51,7 +45,7 @@ impl Observer {
                 self.pending.motion = Some((now, now + MAX_WAKE_TIME, [false; 4]));
             }
             Effect::Rests => {
-                if self.disturbed_until <= asked_at {
+                if self.disturbed_until <= sent_at {
                     self.pending.no_pulses = Some((
                         now + self.limits.max_frame_remainder,
                         now + NO_PULSES_TIME,
@@ -61,11 +55,11 @@ impl Observer {
                 let min_good_mv = self.limits.min_good_mv();
                 let is_good = self.supply.is_good_since(self.first_rest_at, min_good_mv);
                 let is_repeated = self.first_rest_at > self.started_at
-                    && asked_at > self.first_rest_at + MAX_SAVE_TIME;
+                    && sent_at > self.first_rest_at + MAX_SAVE_TIME;
                 if is_repeated && is_good && self.limits.is_memory_reliable {
-                    self.pending.no_writes_until = Some(asked_at + 500 * MS);
+                    self.pending.no_writes_until = Some(sent_at + 500 * MS);
                 } else if self.first_rest_at < self.started_at {
-                    self.first_rest_at = asked_at;
+                    self.first_rest_at = sent_at;
                 }
             }
             _ => {}

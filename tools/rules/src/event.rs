@@ -48,7 +48,7 @@ pub enum Event<'a> {
         is_command: bool,
     },
     /// A command that moves, freezes or rests the robot.
-    Order {
+    MotionCommand {
         /// The command's effect on the servos.
         effect: Effect,
         /// True if the robot accepted the command, false if the robot refused it, `None` if the answer is not known.
@@ -66,7 +66,7 @@ pub enum Event<'a> {
         /// The line's effect on the servos.
         effect: Effect,
         /// The time at which the line was sent.
-        asked_at: Time,
+        sent_at: Time,
         /// The answer.
         answer: &'a str,
     },

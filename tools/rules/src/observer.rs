@@ -13,7 +13,7 @@ use crate::supply::SupplyHistory;
 #[derive(Clone, Debug)]
 pub struct Limits {
     /// The largest change of a servo's pulse from one frame to the next, cycles.
-    pub max_leap_cycles: [u32; 4],
+    pub max_change_cycles: [u32; 4],
     /// The shortest and the longest pulse of each servo, cycles.
     pub width_ranges: [(u32, u32); 4],
     /// The supply voltages below which EEPROM writes, motions and pulses are forbidden, mV.
@@ -43,7 +43,7 @@ impl Default for Limits {
     /// Returns the limits for a robot that is observed exactly, between its frames.
     fn default() -> Self {
         Self {
-            max_leap_cycles: [u32::MAX; 4],
+            max_change_cycles: [u32::MAX; 4],
             width_ranges: [(1_000, 63_000); 4],
             levels_mv: [0; 3],
             supply_error_mv: 40,
@@ -83,9 +83,9 @@ pub struct Observer {
     /// Start and end of each recent stall of main.
     pub(crate) stalls: Vec<(Time, Time)>,
     /// Time of the last motion, stop or rest command that was not refused.
-    pub(crate) ordered_at: Time,
+    pub(crate) last_motion_command_at: Time,
     /// Time of the last `rest` that was not refused.
-    pub(crate) rest_ordered_at: Time,
+    pub(crate) rest_command_at: Time,
     /// Time at which `boot` reported that the robot rests.
     pub(crate) boot_rest_at: Time,
     pub(crate) unanswered_line_count: i32,
@@ -136,8 +136,8 @@ impl Observer {
             cut_at: NEVER,
             disturbed_until: NEVER,
             stalls: Vec::new(),
-            ordered_at: NEVER,
-            rest_ordered_at: NEVER,
+            last_motion_command_at: NEVER,
+            rest_command_at: NEVER,
             boot_rest_at: NEVER,
             unanswered_line_count: 0,
             last_command_at: NEVER,
@@ -294,10 +294,10 @@ impl Observer {
                     self.last_command_read_at = time;
                 }
             }
-            Event::Order {
+            Event::MotionCommand {
                 effect,
                 is_accepted,
-            } => self.note_order(effect, is_accepted),
+            } => self.note_motion_command(effect, is_accepted),
             Event::CalibrationChanged { is_saved } => {
                 self.has_unsaved_settings = !is_saved;
                 if !is_saved {
@@ -309,11 +309,11 @@ impl Observer {
             Event::Answer {
                 line,
                 effect,
-                asked_at,
+                sent_at,
                 answer,
-            } => self.judge_answer(line, effect, asked_at, answer),
-            Event::Unanswered(asked_at, line) => {
-                if !self.was_disturbed_since(asked_at - MS) {
+            } => self.judge_answer(line, effect, sent_at, answer),
+            Event::Unanswered(sent_at, line) => {
+                if !self.was_disturbed_since(sent_at - MS) {
                     self.fail(Rule::AnswersAgain, format!("no answer to {line}"));
                 }
             }
@@ -417,7 +417,7 @@ impl Observer {
         }
         if cause == Cause::BrownOut {
             let first_brown_out = self.brown_out_times[0];
-            if first_brown_out > now - 4_000 * MS && self.ordered_at < first_brown_out {
+            if first_brown_out > now - 4_000 * MS && self.last_motion_command_at < first_brown_out {
                 let ms = (now - first_brown_out) / MS;
                 self.fail(Rule::BrownOutsEnd, format!("six brown-outs in {ms} ms"));
             }
@@ -426,15 +426,15 @@ impl Observer {
         }
     }
 
-    fn note_order(&mut self, effect: Effect, is_accepted: Option<bool>) {
+    fn note_motion_command(&mut self, effect: Effect, is_accepted: Option<bool>) {
         self.pending.motion = None;
         if is_accepted == Some(false) {
             return;
         }
-        self.ordered_at = self.now;
+        self.last_motion_command_at = self.now;
         self.pending = PendingPromises::default();
         if effect == Effect::Rests {
-            self.rest_ordered_at = self.now;
+            self.rest_command_at = self.now;
             for servo in &mut self.servos {
                 servo.forget_reset();
             }
@@ -442,11 +442,14 @@ impl Observer {
             self.first_rest_at = NEVER;
         }
         if effect == Effect::Moves {
-            self.reports.note_order(is_accepted.is_some());
+            self.reports.note_motion_command(is_accepted.is_some());
             self.unfinished_motion_count += 1;
         }
         let is_undisturbed = self.disturbed_until <= self.now;
-        self.permission
-            .note_order(self.now, effect, is_accepted.is_some() && is_undisturbed);
+        self.permission.note_motion_command(
+            self.now,
+            effect,
+            is_accepted.is_some() && is_undisturbed,
+        );
     }
 }

@@ -48,7 +48,7 @@ impl Observer {
         let recent_brown_outs = self
             .brown_out_times
             .iter()
-            .filter(|time| is_recent(**time, 4_000) && **time > self.ordered_at);
+            .filter(|time| is_recent(**time, 4_000) && **time > self.last_motion_command_at);
         (
             (
                 servos,
@@ -64,7 +64,7 @@ impl Observer {
             ),
             (
                 is_recent(self.started_at, 500),
-                is_recent(self.ordered_at, 45),
+                is_recent(self.last_motion_command_at, 45),
                 is_recent(self.disturbed_until, 300),
             ),
             self.supply

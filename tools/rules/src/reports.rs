@@ -51,7 +51,7 @@ impl Reports {
     }
 
     /// Records a motion command, which ends a stop. If `is_certain` is false, the command may have been lost.
-    pub(crate) const fn note_order(&mut self, is_certain: bool) {
+    pub(crate) const fn note_motion_command(&mut self, is_certain: bool) {
         let was_reported = self.stopped_at.is_some() && self.is_reported;
         self.may_still_be_stopped = !is_certain && (was_reported || self.may_still_be_stopped);
         self.stopped_at = None;
@@ -78,7 +78,7 @@ impl Observer {
             self.reports.reported_at = self.now;
             if line.contains("no line for") {
                 // Soon after a command, the line may report a stop that the command has already ended.
-                if first_byte_at - self.ordered_at >= self.limits.max_queue_time {
+                if first_byte_at - self.last_motion_command_at >= self.limits.max_queue_time {
                     self.reports.note_stop(self.now);
                 }
                 let silence = first_byte_at - self.last_command_at;
@@ -110,7 +110,8 @@ impl Observer {
         let reports_rest =
             line.ends_with("pulses ended") || line.contains("several times in a row");
         // If a command arrived while the line waited or was printed, the line no longer describes the robot.
-        if reports_rest && first_byte_at - self.ordered_at > self.limits.max_queue_time {
+        if reports_rest && first_byte_at - self.last_motion_command_at > self.limits.max_queue_time
+        {
             self.permission.schedule_expiry(self.now);
         }
     }
@@ -183,7 +184,7 @@ impl Observer {
                 Rule::NoPulsesInRest,
             ));
         } else if !has_fault
-            && self.ordered_at < now - 400 * MS
+            && self.last_motion_command_at < now - 400 * MS
             && !self.was_disturbed_since(now - 400 * MS)
         {
             let has_no_pulses = self

@@ -63,7 +63,7 @@ impl Permission {
         self.boot_grant_at = can_boot.then_some(time + MIN_BOOT_TIME);
     }
 
-    pub(crate) fn note_order(&mut self, time: Time, effect: Effect, is_certain: bool) {
+    pub(crate) fn note_motion_command(&mut self, time: Time, effect: Effect, is_certain: bool) {
         self.cancel_order();
         match effect {
             Effect::Rests if is_certain => self.expiry = Some((time + MAX_TIME_TO_REST, true)),
@@ -204,7 +204,7 @@ impl Observer {
         let is_complete = !pulse.is_cut && !pulse.is_end_late;
         let is_comparable =
             servo.last_complete_start > NEVER && !(is_first && servo.is_recalibrated);
-        if is_complete && is_comparable && change > self.limits.max_leap_cycles[pulse.servo] {
+        if is_complete && is_comparable && change > self.limits.max_change_cycles[pulse.servo] {
             let observation = format!(
                 "{name} has {} cycles and then {}",
                 servo.last_complete_width, pulse.width
@@ -270,18 +270,18 @@ impl Observer {
         // The frame after a hang is completed even if a `rest` command arrives within it.
         let hung_until = self.started_at.max(servo.last_complete_start);
         let has_rested =
-            self.rest_ordered_at > hung_until && now - self.rest_ordered_at > MAX_TIME_TO_REST;
+            self.rest_command_at > hung_until && now - self.rest_command_at > MAX_TIME_TO_REST;
         let is_after_hang = servo.was_hung
             && !servo.is_position_lost
             && servo.last_complete_start > NEVER
             && now - servo.last_complete_start < 1_000 * MS
             && !has_rested;
-        let has_no_command = self.ordered_at < servo.last_complete_start;
+        let has_no_command = self.last_motion_command_at < servo.last_complete_start;
         let change = pulse.width.abs_diff(servo.last_complete_width);
         if is_after_hang
             && has_no_command
             && !pulse.is_cut
-            && change > self.limits.max_leap_cycles[pulse.servo]
+            && change > self.limits.max_change_cycles[pulse.servo]
         {
             let observation = format!(
                 "{name} had {} cycles before and {} after",
@@ -319,7 +319,7 @@ impl Observer {
             .limits
             .levels_mv
             .map(|mv| mv + self.limits.supply_error_mv);
-        let has_reason = self.rest_ordered_at > end - 400 * MS
+        let has_reason = self.rest_command_at > end - 400 * MS
             || self.cut_at > end - 25 * MS
             || self.started_at > end - 25 * MS
             || self.boot_rest_at > end - 60 * MS

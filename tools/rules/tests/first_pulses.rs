@@ -4,11 +4,11 @@ use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 use lizard_rules::{Event, Limits, MS, Observer, Pulse, Rule, Time};
 
-const REST: Event<'_> = Event::Order {
+const REST: Event<'_> = Event::MotionCommand {
     effect: Effect::Rests,
     is_accepted: Some(true),
 };
-const STAND: Event<'_> = Event::Order {
+const STAND: Event<'_> = Event::MotionCommand {
     effect: Effect::Moves,
     is_accepted: Some(true),
 };

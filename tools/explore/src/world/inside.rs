@@ -54,15 +54,15 @@ impl World {
         // the robot after the command.
         let has_unnoticed_edge =
             self.observer.is_stop_unreported() && self.running_robot.board.late_edges > 0;
-        self.observe_order(effect, Some(is_accepted));
+        self.observe_motion_command(effect, Some(is_accepted));
         if is_accepted && effect == Effect::Calibrates {
             self.observe(Event::CalibrationChanged { is_saved: false });
         }
-        let asked_at = self.now;
+        let sent_at = self.now;
         self.observe(Event::Answer {
             line,
             effect,
-            asked_at,
+            sent_at,
             answer,
         });
         if answer == "ok load" {
@@ -96,9 +96,9 @@ impl World {
     }
 
     /// Passes a command that moves, freezes or rests the robot to the observer.
-    pub(super) fn observe_order(&mut self, effect: Effect, is_accepted: Option<bool>) {
+    pub(super) fn observe_motion_command(&mut self, effect: Effect, is_accepted: Option<bool>) {
         if matches!(effect, Effect::Moves | Effect::Freezes | Effect::Rests) {
-            self.observe(Event::Order {
+            self.observe(Event::MotionCommand {
                 effect,
                 is_accepted,
             });
@@ -217,10 +217,10 @@ impl World {
             .map(|width| width.0);
         let slew = self.robot().slew().per_frame;
         for (servo, calibration) in self.running_robot.motion().calibration().iter().enumerate() {
-            let max_leap_cycles = calibration
+            let max_change_cycles = calibration
                 .max_width_change(slew)
                 .saturating_add(ROUNDING_CYCLES);
-            self.observer.limits.max_leap_cycles[servo] = max_leap_cycles.into();
+            self.observer.limits.max_change_cycles[servo] = max_change_cycles.into();
         }
         self.observer.observe_frame(self.now, widths);
         self.now += FRAME;
