@@ -46,7 +46,7 @@ pub fn feed() {
 #[avr_device::interrupt(atmega328p)]
 fn WDT() {
     kept::mark_hung();
-    pulses::hush();
+    pulses::suppress_pulses();
     // SAFETY: every enabled interrupt has a handler. This interrupt does not recur, because the
     // chip has disabled it, and this handler never returns.
     unsafe { avr_device::interrupt::enable() };

@@ -63,7 +63,7 @@ impl<C: Console> Guide<C> {
     }
 
     /// True if the active settings are not saved, or may not be.
-    pub fn is_changed(&self) -> bool {
+    pub fn has_unsaved_changes(&self) -> bool {
         self.may_be_outdated || !self.active.is_equivalent_to(&self.saved)
     }
 

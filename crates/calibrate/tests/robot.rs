@@ -307,7 +307,7 @@ fn whichever_line_or_answer_is_lost_the_guide_ends_with_the_settings_of_the_robo
             }
             loss_count += 1;
             let is_query = guide.console().lines[index] == "status";
-            assert!(is_query || guide.is_changed(), "{index}, {loss:?}");
+            assert!(is_query || guide.has_unsaved_changes(), "{index}, {loss:?}");
             // A cancelled calibration restores the stored settings, so a reset changes nothing.
             block_on(guide.restore()).expect("the robot answers");
             let active = guide.console().robot.calibration();
@@ -315,7 +315,7 @@ fn whichever_line_or_answer_is_lost_the_guide_ends_with_the_settings_of_the_robo
                 active.is_equivalent_to(guide.calibration()),
                 "{index}, {loss:?}"
             );
-            assert!(!guide.is_changed(), "{index}, {loss:?}");
+            assert!(!guide.has_unsaved_changes(), "{index}, {loss:?}");
             let stored_settings = load_stored(&mut guide);
             assert!(
                 stored_settings.is_equivalent_to(&active),
@@ -538,7 +538,7 @@ proptest! {
             true => block_on(guide.save()).expect("the robot answers"),
             false => block_on(guide.restore()).map(drop).expect("the robot answers"),
         }
-        prop_assert!(!guide.is_changed());
+        prop_assert!(!guide.has_unsaved_changes());
         let shown = guide.calibration().clone();
         let LossyConsole { robot, saved, .. } = guide.console();
         let active = robot.calibration();

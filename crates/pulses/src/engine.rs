@@ -37,7 +37,7 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// The plan: the timer count at which the falling edge is due.
     pub fall_count: &'a Word,
     #[doc(hidden)]
-    /// The bits of a port that may go high: all, or none after [`Engine::hush`].
+    /// The bits of a port that may go high: all, or none after [`Engine::suppress_pulses`].
     pub allowed_pins: &'a Byte,
     #[doc(hidden)]
     /// The ticks so far, modulo 256; written only by TIMER1_COMPA.
@@ -91,7 +91,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// board, which would cut the pulse short and so drive the servo to its end stop. The ticks continue. The call is
     /// a single store, so it is allowed anywhere, even in an interrupt handler; only a reset undoes it.
     #[inline(always)]
-    pub fn hush(&self) {
+    pub fn suppress_pulses(&self) {
         self.allowed_pins.set(0);
     }
 

@@ -91,8 +91,8 @@ pub use timing::{
 };
 
 /// Makes the enclosing module the owner of Timer1 and of the pins of one to eight servos. The module then has the
-/// functions `start`, `submit`, `is_taken`, `hush`, `ticks` and `late_edges` of [`Engine`], and the handlers of both
-/// compare interrupts.
+/// functions `start`, `submit`, `is_taken`, `suppress_pulses`, `ticks` and `late_edges` of [`Engine`], and the handlers
+/// of both compare interrupts.
 ///
 /// - `engine!(PINS)` with a constant `PINS: [Pin; N]`, for pins that are known at compile time.
 /// - `engine!(later: N)` for pins that are known at run time; adds the function `connect`.
@@ -166,11 +166,11 @@ macro_rules! engine {
             ENGINE.is_taken()
         }
 
-        /// See `servo_pulses::Engine::hush`.
+        /// See `servo_pulses::Engine::suppress_pulses`.
         #[inline(always)]
         #[allow(dead_code)]
-        pub fn hush() {
-            ENGINE.hush();
+        pub fn suppress_pulses() {
+            ENGINE.suppress_pulses();
         }
 
         /// See `servo_pulses::Engine::ticks`.

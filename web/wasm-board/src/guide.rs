@@ -32,7 +32,7 @@ impl Guide {
     #[must_use]
     #[wasm_bindgen(getter, js_name = isChanged)]
     pub fn is_changed(&self) -> bool {
-        self.0.is_changed()
+        self.0.has_unsaved_changes()
     }
 
     /// Makes the robot stand.

@@ -258,7 +258,7 @@ impl Controller {
         match self.motion.activity() {
             Activity::Rest => State::Resting,
             Activity::Gait(id) if id != GaitId::STAND => State::Walking,
-            _ => State::Still,
+            _ => State::Posing,
         }
     }
 

@@ -15,7 +15,7 @@ pub enum State {
     /// The servos get no pulses.
     Resting,
     /// The robot stands, holds a pose or moves to one.
-    Still,
+    Posing,
     /// A gait other than `stand` is running, or the robot is changing to one.
     Walking,
 }
@@ -69,7 +69,7 @@ pub enum Response {
 
 impl State {
     /// All states, in the order of the columns of the table of events.
-    pub const ALL: [Self; 3] = [Self::Resting, Self::Still, Self::Walking];
+    pub const ALL: [Self; 3] = [Self::Resting, Self::Posing, Self::Walking];
 }
 
 impl Event {
@@ -100,8 +100,8 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     let can_move = matches!(supply, None | Some(Level::Good | Level::Slow));
     // Before the first measurement an order to write is accepted; the write waits for the measurement.
     let can_write = matches!(supply, None | Some(Level::Good));
-    let [resting, still, walking] = match event {
-        // event                     resting                  still                    walking
+    let [resting, posing, walking] = match event {
+        // event                     resting                  posing                   walking
         Stand if can_move        => [Obey,                    Obey,                    Obey],
         Stand                    => [RefuseSupply,            RefuseSupply,            RefuseSupply],
         Move if can_move         => [RefuseResting,           Obey,                    Obey],
@@ -121,7 +121,7 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     };
     match state {
         State::Resting => resting,
-        State::Still => still,
+        State::Posing => posing,
         State::Walking => walking,
     }
 }

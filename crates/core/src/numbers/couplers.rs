@@ -28,7 +28,8 @@ pub struct Tables<'a> {
     /// The rise over `R - s`, made by [`stretched_rise_table`]; for a five-bar whose crank tips can be so far apart
     /// that [`Couplers::is_near_stretched`] is true.
     pub stretched_rise: Option<Flash<'a, Table>>,
-    /// The rise over `s - N`, made by [`folded_rise_table`]; for couplers for which [`Couplers::differ_much`] is true.
+    /// The rise over `s - N`, made by [`folded_rise_table`]; for couplers for which [`Couplers::needs_folded_table`] is
+    /// true.
     pub folded_rise: Option<Flash<'a, Table>>,
     /// The magnitude of the skew over `s`, made by [`skew_table`]; for unequal couplers.
     pub skew: Option<Flash<'a, Table>>,
@@ -94,8 +95,8 @@ impl CouplerLengths {
         self.right
     }
 
-    /// Implements [`Couplers::differ_much`].
-    pub const fn differs_much(&self) -> bool {
+    /// Implements [`Couplers::needs_folded_table`].
+    pub const fn needs_folded_table(&self) -> bool {
         2 * self.folded_sq > self.reach_sq >> OCTAVE_COUNT
     }
 }
@@ -125,8 +126,8 @@ impl<'a> Couplers<'a> {
     /// True if the lengths differ so much that the table over `s` begins below `2 N`. The table for folded couplers
     /// then gives the rise from `2 N` down to the folded position, `s = N`. For other couplers, [`Couplers::shape_at`]
     /// returns `None` near the folded position.
-    pub const fn differ_much(left: i16, right: i16) -> bool {
-        CouplerLengths::new(left, right).differs_much()
+    pub const fn needs_folded_table(left: i16, right: i16) -> bool {
+        CouplerLengths::new(left, right).needs_folded_table()
     }
 
     /// True if the squared distance of the crank tips, `tips_sq`, is above three quarters of `R`. There the rise is

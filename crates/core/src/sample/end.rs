@@ -40,7 +40,7 @@ impl SampleCouplers {
             right,
             rise: couplers::rise_table(left, right),
             stretched_rise: couplers::stretched_rise_table(left, right),
-            folded_rise: Couplers::differ_much(left, right)
+            folded_rise: Couplers::needs_folded_table(left, right)
                 .then(|| couplers::folded_rise_table(left, right)),
             skew: are_unequal.then(|| couplers::skew_table(left, right)),
         }

@@ -16,7 +16,7 @@ fn safety_without_boot() -> Safety {
 
 /// Checks a frame of a robot that stands still, without a `deadman` time.
 fn check_still_frame(safety: &mut Safety, health: &Health) -> Reaction {
-    safety.check_frame(health, &sample_supplies(), State::Still, 0)
+    safety.check_frame(health, &sample_supplies(), State::Posing, 0)
 }
 
 /// Returns the health of a board with this supply voltage of the chip, and 6 V at the servos' rail.
@@ -61,11 +61,11 @@ fn before_the_supply_has_been_measured_a_robot_may_move_but_not_write() {
         check_still_frame(&mut safety, &Health::default());
         assert!(!safety.allows_writing());
         assert_eq!(
-            safety.response(Event::Save, State::Still),
+            safety.response(Event::Save, State::Posing),
             Response::Obey,
             "the write waits for the measurement"
         );
-        assert_eq!(safety.response(Event::Move, State::Still), Response::Obey);
+        assert_eq!(safety.response(Event::Move, State::Posing), Response::Obey);
     }
     // Writing is allowed after six readings.
     for _ in 0..5 {
@@ -147,7 +147,7 @@ fn without_deadman_or_gait_silence_is_not_a_fault() {
     for _ in 0..5000 {
         for (state, deadman_ms) in [
             (State::Walking, 0),
-            (State::Still, 20),
+            (State::Posing, 20),
             (State::Resting, 20),
         ] {
             let reaction = safety.check_frame(&HEALTHY_BOARD, &supplies, state, deadman_ms);
@@ -159,7 +159,7 @@ fn without_deadman_or_gait_silence_is_not_a_fault() {
 #[test]
 fn a_gait_that_boot_starts_ends_only_after_the_time_of_deadman() {
     let mut safety = Safety::default();
-    let mut state = State::Still;
+    let mut state = State::Posing;
     let mut boot_frame = 0;
     for frame in 1..400 {
         match safety.check_frame(&HEALTHY_BOARD, &sample_supplies(), state, 1000) {
@@ -185,7 +185,7 @@ fn a_falling_supply_first_forbids_writing_then_stops_the_robot_then_ends_the_pul
         (
             reactions[5],
             safety.fault(),
-            safety.response(Event::Move, State::Still) == Response::Obey,
+            safety.response(Event::Move, State::Posing) == Response::Obey,
             safety.allows_writing(),
             take_notices(&mut safety).len(),
         )

@@ -114,7 +114,8 @@ impl FiveBarLengths {
             Some(couplers::rise_table(left, right)),
             self.can_nearly_stretch
                 .then(|| couplers::stretched_rise_table(left, right)),
-            Couplers::differ_much(left, right).then(|| couplers::folded_rise_table(left, right)),
+            Couplers::needs_folded_table(left, right)
+                .then(|| couplers::folded_rise_table(left, right)),
             (left != right).then(|| couplers::skew_table(left, right)),
         ]
     }
