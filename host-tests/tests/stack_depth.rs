@@ -12,11 +12,11 @@ const SET_STACK_POINTER: &str = "
         out SPH, r29 $ out SPL, r28";
 
 fn depth_of(image: &Image) -> StackDepth {
-    StackDepth::of(image).unwrap_or_else(|error| panic!("{error}"))
+    StackDepth::compute(image).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn expect_refusal(image: &Image) -> StackError {
-    StackDepth::of(image).expect_err("the program must be refused")
+    StackDepth::compute(image).expect_err("the program must be refused")
 }
 
 /// Runs a program for 10 ms and returns the depth of its stack.

@@ -31,13 +31,13 @@ fn walk_all_gaits(model: ServoModel) -> Replay {
     let recording = play(&mut uno, servo_pins(robot()), &script, |_| Ok(()));
     let recording = recording.expect("the event handler never fails");
     let spans = command_spans(&script, &recording.answers);
-    Replay::of(robot(), &recording.frames, spans, model)
+    Replay::new(robot(), &recording.frames, spans, model)
 }
 
 #[test]
 fn the_image_moves_the_body_as_its_gaits_predict() {
     let model = ServoModel::Ideal;
-    let report = Report::of(robot(), &walk_all_gaits(model), model, false);
+    let report = Report::new(robot(), &walk_all_gaits(model), model, false);
     let cycles: Vec<_> = report
         .rows
         .iter()

@@ -26,7 +26,8 @@ pub struct Args {
 pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
     let file = File::create_new(&args.file);
-    let result = file.and_then(|mut file| file.write_all(robot_file::DEFAULT_ROBOT.as_bytes()));
+    let result =
+        file.and_then(|mut file| file.write_all(robot_file::DEFAULT_ROBOT_TOML.as_bytes()));
     result.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => Failure::Input(format!(
             "{name} already exists and is left as it is; name a new file"

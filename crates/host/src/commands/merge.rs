@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::Failure;
 use crate::shared::files;
-use crate::shared::spread::{PartOutput, Spreadable, wrong_parts_failure};
+use crate::shared::spread::{PartOutput, Spreadable, mismatched_parts_failure};
 
 /// Join the parts of a long computation
 ///
@@ -154,7 +154,7 @@ impl MergedParts {
         run_command: impl FnOnce(C) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let mut command: C =
-            serde_json::from_value(self.options).map_err(|_| wrong_parts_failure())?;
+            serde_json::from_value(self.options).map_err(|_| mismatched_parts_failure())?;
         command.spread_args().set_merged(self.robot, self.results);
         run_command(command)
     }

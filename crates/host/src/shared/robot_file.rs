@@ -8,7 +8,7 @@ use crate::Failure;
 use crate::shared::files::{self, note_input};
 
 /// The text of the source tree's robot.toml, which is used if no robot.toml is found.
-pub(crate) const DEFAULT_ROBOT: &str = include_str!("../../../../robot.toml");
+pub(crate) const DEFAULT_ROBOT_TOML: &str = include_str!("../../../../robot.toml");
 
 /// The robots of robots/, by their names.
 const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
@@ -121,7 +121,7 @@ impl RobotFile {
         let folder = current_folder()?;
         let mut candidates = folder.ancestors().map(|folder| folder.join("robot.toml"));
         let file = candidates.find(|path| path.is_file());
-        Ok(file.map_or(RobotSource::BuiltIn(DEFAULT_ROBOT), RobotSource::File))
+        Ok(file.map_or(RobotSource::BuiltIn(DEFAULT_ROBOT_TOML), RobotSource::File))
     }
 }
 

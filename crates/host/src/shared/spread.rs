@@ -173,11 +173,11 @@ impl SpreadArgs {
                 .clone()
                 .any(|((index, _), expected_index)| *index != expected_index)
         {
-            return Err(wrong_parts_failure());
+            return Err(mismatched_parts_failure());
         }
         let deserialize = |((_, value), _): ((&usize, &Value), usize)| T::deserialize(value);
         let pieces: Result<Vec<T>, _> = values.map(deserialize).collect();
-        pieces.map(Some).map_err(|_| wrong_parts_failure())
+        pieces.map(Some).map_err(|_| mismatched_parts_failure())
     }
 
     /// Returns all pieces in order. `compute_piece` computes a piece from its index; in a merge, the pieces are read
@@ -213,7 +213,7 @@ impl SpreadArgs {
 }
 
 /// The failure for parts that belong to another computation.
-pub(crate) fn wrong_parts_failure() -> Failure {
+pub(crate) fn mismatched_parts_failure() -> Failure {
     Failure::Input("the parts do not hold what this computation finds".to_owned())
 }
 

@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn a_patrol_adds_a_button_and_a_nose_that_its_routine_uses() {
-        let robot = with_patrol(robot_file::DEFAULT_ROBOT, &[])
+        let robot = with_patrol(robot_file::DEFAULT_ROBOT_TOML, &[])
             .expect("the built-in robot has room for a patrol");
         let inputs: Vec<&str> = robot.inputs().named_pins().map(|(name, _)| name).collect();
         assert_eq!(inputs, ["button", "nose"]);

@@ -152,7 +152,7 @@ impl Figures {
         report_progress("the stack's depth");
         let image = firmware::read_image(elf)?;
         let stack =
-            StackDepth::of(&image).map_err(|error| Failure::Impossible(error.to_string()))?;
+            StackDepth::compute(&image).map_err(|error| Failure::Impossible(error.to_string()))?;
         report_progress("pulses on an idle line");
         let mut idle_run = GaitRun::record(boot_board()?, gait, 20_000)?;
         let command_bytes = idle_run.board.uno.received_by_uno().len();

@@ -97,8 +97,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
         .iter()
         .any(|step| step.command.starts_with("speed"));
     let spinner = Spinner::new("walking every frame");
-    let replay = Replay::of(&robot, &recording.frames, spans, model);
-    let report = Report::of(&robot, &replay, model, changes_speed);
+    let replay = Replay::new(&robot, &recording.frames, spans, model);
+    let report = Report::new(&robot, &replay, model, changes_speed);
     drop(spinner);
 
     let mut out = io::stdout().lock();

@@ -31,7 +31,7 @@ pub struct Stage {
 
 impl Replay {
     /// Moves the simulated robot through the frames of a run. `spans` are the run's commands.
-    pub fn of(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
+    pub fn new(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
         let to_us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);
         let states = log.widths.iter().map(|widths| twin.push(widths.map(to_us)));

@@ -112,7 +112,7 @@ impl Displacement {
 impl Report {
     /// Summarises a replay in one row for each command. `changes_speed` is true if the script changes the speed of the
     /// gaits; cycles and predicted rounds are then left out.
-    pub fn of(robot: &Robot, replay: &Replay, model: ServoModel, changes_speed: bool) -> Self {
+    pub fn new(robot: &Robot, replay: &Replay, model: ServoModel, changes_speed: bool) -> Self {
         let stages = replay
             .stages
             .iter()

@@ -57,7 +57,7 @@ impl StackDepth {
     ///
     /// # Errors
     /// See [`StackError`].
-    pub fn of(image: &Image) -> Result<Self, StackError> {
+    pub fn compute(image: &Image) -> Result<Self, StackError> {
         let flash = image.flash();
         let bad_interrupt = image.symbol("__bad_interrupt");
         let bad_interrupt_address = bad_interrupt.map(|symbol| symbol.address as u32);
