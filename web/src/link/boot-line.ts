@@ -1,8 +1,8 @@
 // The serial line to a board's boot loader. The protocol is implemented in Rust, in the WebAssembly module for boards.
-import type { Line } from '../../generated/board';
+import type { SerialLine } from '../../generated/board';
 import { BAUD, type Link } from './link';
 
-export class BootLine implements Line {
+export class BootLine implements SerialLine {
   private receivedBytes: number[] = [];
   /** Called when bytes have arrived. */
   private onArrival: () => void = () => {};

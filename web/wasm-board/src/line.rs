@@ -8,9 +8,9 @@ use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
-const LINE: &str = "
+const TYPES: &str = "
 /** A serial line to a board. Times are in ms by the board's clock: a simulated board may run slower than real time. */
-export interface Line {
+export interface SerialLine {
   /** Resets the board and sets the baud rate. */
   reset(baud: number): Promise<void>;
   write(bytes: Uint8Array): Promise<void>;
@@ -24,23 +24,23 @@ export interface Line {
 #[wasm_bindgen]
 extern "C" {
     /// A serial line to a board, made by the page.
-    #[wasm_bindgen(typescript_type = "Line")]
+    #[wasm_bindgen(typescript_type = "SerialLine")]
     #[derive(Debug)]
-    pub type Line;
+    pub type SerialLine;
 
     #[wasm_bindgen(method, catch)]
-    async fn reset(this: &Line, baud: u32) -> Result<JsValue, JsValue>;
+    async fn reset(this: &SerialLine, baud: u32) -> Result<JsValue, JsValue>;
     #[wasm_bindgen(method, catch)]
-    async fn write(this: &Line, bytes: Uint8Array) -> Result<JsValue, JsValue>;
+    async fn write(this: &SerialLine, bytes: Uint8Array) -> Result<JsValue, JsValue>;
     #[wasm_bindgen(method, catch)]
-    async fn read(this: &Line, count: u32, timeout_ms: f64) -> Result<JsValue, JsValue>;
+    async fn read(this: &SerialLine, count: u32, timeout_ms: f64) -> Result<JsValue, JsValue>;
     #[wasm_bindgen(method, catch)]
-    async fn discard(this: &Line, duration_ms: f64) -> Result<JsValue, JsValue>;
+    async fn discard(this: &SerialLine, duration_ms: f64) -> Result<JsValue, JsValue>;
 }
 
 /// The board at the other end of the page's serial line.
 #[derive(Debug)]
-pub(crate) struct JsBoard(pub(crate) Line);
+pub(crate) struct JsBoard(pub(crate) SerialLine);
 
 impl Board for JsBoard {
     async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {

@@ -6,7 +6,7 @@ use lizard_core::numbers::mark::Mark;
 use lizard_upload::{Event, Image, Loader, LoaderKind, Model, Step, Target};
 use wasm_bindgen::prelude::*;
 
-use crate::line::{JsBoard, Line};
+use crate::line::{JsBoard, SerialLine};
 
 /// Reads an image in Intel HEX; returns its bytes from address 0 on.
 ///
@@ -49,7 +49,7 @@ pub enum Board {
 /// Rejects with a sentence for the user that says what the flash holds now.
 #[wasm_bindgen]
 pub async fn upload(
-    line: Line,
+    line: SerialLine,
     bytes: Vec<u8>,
     #[wasm_bindgen(js_name = isRobotAlone)] is_robot_alone: bool,
     board: Board,
@@ -91,7 +91,7 @@ pub async fn upload(
 /// # Errors
 /// Rejects with a sentence for the user if the board is neither a UNO nor a Nano, or does not answer.
 #[wasm_bindgen]
-pub async fn identify(line: Line) -> Result<String, JsError> {
+pub async fn identify(line: SerialLine) -> Result<String, JsError> {
     let mut loader = Loader::new(JsBoard(line));
     let kind = lizard_upload::identify(&mut loader).await?;
     Ok(match kind {
