@@ -78,8 +78,8 @@ impl BuildProblem {
             Self::Clash(Clash::Unproved(pair)) => Some(CollidingPair {
                 first: pair.first.clone(),
                 second: pair.second.clone(),
-                mm: pair.proved,
-                pose: pair.doubt,
+                mm: pair.lower_bound,
+                pose: pair.unproved_angles,
             }),
             Self::OverlapOnMount { first, second, mm } => Some(CollidingPair {
                 first: first.clone(),

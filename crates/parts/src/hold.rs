@@ -22,17 +22,17 @@ pub struct SpringEffect {
     pub rate: f64,
     /// Lever arm of the strut's pull about the leg's pivot, mm: the least and the greatest of any leg in any gait. It
     /// varies, since the pull is perpendicular to the anchor's arm at one pose only.
-    #[serde(serialize_with = "decimals::each::<1000, _>")]
-    pub lever: [f64; 2],
+    #[serde(rename = "lever", serialize_with = "decimals::each::<1000, _>")]
+    pub lever_arm_range: [f64; 2],
     /// Torque up to which the leg follows its servo exactly in all gaits, N mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub preload: f64,
     /// Lag of a leg at the slot's end, deg: the least and the greatest of all gaits.
-    #[serde(serialize_with = "decimals::each::<1000, _>")]
-    pub way: [f64; 2],
+    #[serde(rename = "way", serialize_with = "decimals::each::<1000, _>")]
+    pub lag_range: [f64; 2],
     /// Torque on the leg at the slot's end, N mm: the least and the greatest of all gaits.
-    #[serde(serialize_with = "decimals::each::<1000, _>")]
-    pub end: [f64; 2],
+    #[serde(rename = "end", serialize_with = "decimals::each::<1000, _>")]
+    pub torque_range: [f64; 2],
     /// Torque that the friction of its pad exerts on a leg, N mm.
     #[serde(serialize_with = "decimals::one::<1000, _>")]
     pub friction: f64,
@@ -45,7 +45,7 @@ impl SpringEffect {
     /// True if a servo can continue to turn when its leg has reached the end of the slot: the greatest torque there
     /// is less than 0.7 of the servo's stall torque.
     pub fn lets_servo_turn(&self) -> bool {
-        self.end[1] < 0.7 * self.stall
+        self.torque_range[1] < 0.7 * self.stall
     }
 
     /// The effect in a robot, whose struts are all equal; `None` if they are rigid.
@@ -72,10 +72,10 @@ impl SpringEffect {
             installed: robot.mounted_spring_length(),
             force: strut.force,
             rate: strut.rate,
-            lever: lever_arm_range,
+            lever_arm_range,
             preload: strut.force * lever_arm_range[0],
-            way: lag_range,
-            end: torque_range,
+            lag_range,
+            torque_range,
             friction: ground.mean_pad_friction() * ground.feet.reach,
             stall: robot.motors().per_servo[0].stall_torque,
         })
@@ -90,7 +90,7 @@ impl fmt::Display for SpringEffect {
             [least_lever, greatest_lever],
             [least_lag, greatest_lag],
             [least_torque, greatest_torque],
-        ) = (self.lever, self.way, self.end);
+        ) = (self.lever_arm_range, self.lag_range, self.torque_range);
         let stall_text = match self.lets_servo_turn() {
             true => "So a caught foot does not stall it.",
             false => {

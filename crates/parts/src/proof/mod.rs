@@ -51,13 +51,16 @@ pub struct NearestPair {
     /// The name of the other body.
     pub second: String,
     /// Lower bound of their distance over all accepted poses, mm; below 0 they may overlap.
-    pub proved: f64,
-    /// An accepted pose with nearly the distance `proved`; `None` if the bodies come no nearer
+    #[serde(rename = "proved")]
+    pub lower_bound: f64,
+    /// An accepted pose with nearly the distance `lower_bound`; `None` if the bodies come no nearer
     /// than [`FAR_MM`], or if no such pose is found.
-    pub seen: Option<Clearance>,
-    /// Servo angles, deg, near which no larger distance could be proved; `None` if `proved` is
-    /// close to the distance in `seen`. The angles are near the guard's limits, or just beyond.
-    pub doubt: Option<[f64; 4]>,
+    #[serde(rename = "seen")]
+    pub witness: Option<Clearance>,
+    /// Servo angles, deg, near which no larger distance could be proved; `None` if `lower_bound` is
+    /// close to the distance in `witness`. The angles are near the guard's limits, or just beyond.
+    #[serde(rename = "doubt")]
+    pub unproved_angles: Option<[f64; 4]>,
 }
 
 /// A proof that a robot's parts keep clear of each other.
@@ -93,14 +96,14 @@ pub enum Clash {
 
 impl fmt::Display for NearestPair {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (first, second, proved) = (&self.first, &self.second, self.proved);
+        let (first, second, bound) = (&self.first, &self.second, self.lower_bound);
         write!(f, "{first} and {second} ")?;
-        let Some([a, b, c, d]) = self.doubt else {
-            return write!(f, "are {proved:.2} mm apart or more");
+        let Some([a, b, c, d]) = self.unproved_angles else {
+            return write!(f, "are {bound:.2} mm apart or more");
         };
-        match proved < 0.0 {
-            true => write!(f, "may overlap by {:.2} mm", -proved)?,
-            false => write!(f, "may come as near as {proved:.2} mm")?,
+        match bound < 0.0 {
+            true => write!(f, "may overlap by {:.2} mm", -bound)?,
+            false => write!(f, "may come as near as {bound:.2} mm")?,
         }
         write!(f, " near pose {a:.2} {b:.2} {c:.2} {d:.2}")
     }
@@ -109,23 +112,23 @@ impl fmt::Display for NearestPair {
 impl NearestPair {
     /// The clash of the bodies if they come, or may come, closer than `min_mm`; `None` otherwise.
     fn clash(&self, min_mm: f64) -> Option<Clash> {
-        match &self.seen {
+        match &self.witness {
             Some(clearance) if clearance.mm < min_mm.min(0.0) => {
                 Some(Clash::Overlap(Box::new(clearance.clone())))
             }
             Some(clearance) if clearance.mm < min_mm => {
                 Some(Clash::Narrow(Box::new(clearance.clone())))
             }
-            _ if self.proved < min_mm => Some(Clash::Unproved(Box::new(self.clone()))),
+            _ if self.lower_bound < min_mm => Some(Clash::Unproved(Box::new(self.clone()))),
             _ => None,
         }
     }
 
-    /// The least distance in `seen`, mm; the proved bound if `seen` is `None`.
+    /// The distance in `witness`, mm; the proved bound if `witness` is `None`.
     fn least_distance(&self) -> f64 {
-        self.seen
+        self.witness
             .as_ref()
-            .map_or(self.proved, |clearance| clearance.mm)
+            .map_or(self.lower_bound, |clearance| clearance.mm)
     }
 }
 
@@ -268,7 +271,7 @@ impl<'a> Questions<'a> {
         }
         progress(count, count);
         for pairs in [&mut proof.separate_pairs, &mut proof.touching_pairs] {
-            pairs.sort_by(|a, b| a.proved.total_cmp(&b.proved));
+            pairs.sort_by(|a, b| a.lower_bound.total_cmp(&b.lower_bound));
         }
         proof
     }
@@ -307,7 +310,9 @@ impl Assembly {
         task.shape_pairs.retain(|pair| {
             let gap = pair.pinned_gap(&placements);
             if let Some(mm) = gap
-                && nearest.as_ref().is_none_or(|nearest| mm < nearest.proved)
+                && nearest
+                    .as_ref()
+                    .is_none_or(|nearest| mm < nearest.lower_bound)
             {
                 nearest = Some(self.nearest_pair(SearchResult {
                     lower_bound: mm,
@@ -330,16 +335,16 @@ impl Assembly {
             std::array::from_fn(|i| optional_angles[i].unwrap_or(neutral[i]))
         };
         NearestPair {
-            seen: result.nearest.map(|Nearest { pose, mm }| Clearance {
+            witness: result.nearest.map(|Nearest { pose, mm }| Clearance {
                 first: first.clone(),
                 second: second.clone(),
                 pose: pose.pose.into(),
                 mm,
             }),
-            doubt: result.unproved_angles.map(angles_of),
+            unproved_angles: result.unproved_angles.map(angles_of),
             first,
             second,
-            proved: result.lower_bound,
+            lower_bound: result.lower_bound,
         }
     }
 }

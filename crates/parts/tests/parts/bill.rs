@@ -165,15 +165,19 @@ fn a_spring_holds_a_leg_against_friction_but_a_caught_foot_stalls_its_servo() {
     // either side, in look by a little more.
     let angle_deg = 10.0f64.atan2(28.5).to_degrees() + 41.409_622;
     let lever_arm_at = |swing: f64| 22.0 * (angle_deg + swing).to_radians().sin();
-    let [min_lever_arm, max_lever_arm] = hold.lever;
+    let [min_lever_arm, max_lever_arm] = hold.lever_arm_range;
     assert!(lever_arm_at(-24.0) < min_lever_arm && min_lever_arm < lever_arm_at(-20.0) + 0.01);
     assert!(lever_arm_at(20.0) - 0.01 < max_lever_arm && max_lever_arm < 22.0);
-    assert!((hold.preload - hold.lever[0] * hold.force).abs() < 1e-9);
+    assert!((hold.preload - hold.lever_arm_range[0] * hold.force).abs() < 1e-9);
     assert!(hold.friction * 1.8 < hold.preload);
     // With foot and body held, the pin reaches the slot's end long before the 40 deg of a walk. The torque there is
     // more than 0.7 of the stall torque of an SG-90.
-    assert!(12.0 < hold.way[0] && hold.way[1] < 25.0, "{:?}", hold.way);
-    assert!((131.0..160.0).contains(&hold.end[1]) && !hold.lets_servo_turn());
+    assert!(
+        12.0 < hold.lag_range[0] && hold.lag_range[1] < 25.0,
+        "{:?}",
+        hold.lag_range
+    );
+    assert!((131.0..160.0).contains(&hold.torque_range[1]) && !hold.lets_servo_turn());
     // An independent check of the slot's end from the plan of the leg. There the strut is 5 mm longer, and the torque
     // is the spring's force times the derivative of the strut's length with respect to the angle.
     let robot = assembly.robot();

@@ -74,21 +74,21 @@ fn assert_bounds_hold(name: &str) {
             pairs.find(|proved_pair| mounts_of(&proved_pair.first, &proved_pair.second) == mounts);
         let proved_pair = proved_pair.unwrap_or_else(|| panic!("{name}: nothing proved of {pair}"));
         assert!(
-            proved_pair.proved <= pair.mm,
+            proved_pair.lower_bound <= pair.mm,
             "{name}: {pair}, proved {proved_pair}"
         );
     }
     for pair in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
-        let Some(clearance) = &pair.seen else {
+        let Some(clearance) = &pair.witness else {
             continue;
         };
         let accepted = assembly.robot().solve_if_allowed(clearance.pose);
         assert!(accepted.is_some(), "{name}: {pair}");
-        assert!(pair.proved <= clearance.mm, "{name}: {pair}");
+        assert!(pair.lower_bound <= clearance.mm, "{name}: {pair}");
         // The proven bound is not much below the least distance found, except near poses that the guard barely
         // accepts.
-        let is_close = clearance.mm < pair.proved.max(0.0) * 2.1 + 0.02;
-        assert!(is_close || pair.doubt.is_some(), "{name}: {pair}");
+        let is_close = clearance.mm < pair.lower_bound.max(0.0) * 2.1 + 0.02;
+        assert!(is_close || pair.unproved_angles.is_some(), "{name}: {pair}");
     }
 }
 
@@ -117,7 +117,7 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
         proof
             .nearest_separate_pair()
             .expect("some pair is near")
-            .proved
+            .lower_bound
     });
     assert!(rigid_gap >= sprung_gap, "{rigid_gap} {sprung_gap}");
 }
@@ -325,7 +325,11 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
         // Each side of the rod has a clearance of 0.2 mm in the bore.
         assert_eq!(proof.touching_pairs.len(), 2);
         for pair in &proof.touching_pairs {
-            let gap = pair.seen.as_ref().expect("the rod is near its sleeve").mm;
+            let gap = pair
+                .witness
+                .as_ref()
+                .expect("the rod is near its sleeve")
+                .mm;
             assert!((gap - assembly.robot().parts().fit).abs() < 1e-9, "{pair}");
         }
     }

@@ -79,10 +79,10 @@ impl<'a> From<&'a NearestPair> for Pair<'a> {
         Self {
             first: &pair.first,
             second: &pair.second,
-            proved: pair.proved,
-            seen: pair.seen.as_ref().map(|seen| seen.mm),
-            pose: pair.seen.as_ref().map(|seen| seen.pose),
-            doubt: pair.doubt,
+            proved: pair.lower_bound,
+            seen: pair.witness.as_ref().map(|clearance| clearance.mm),
+            pose: pair.witness.as_ref().map(|clearance| clearance.pose),
+            doubt: pair.unproved_angles,
         }
     }
 }
@@ -159,7 +159,7 @@ fn print_proof(proof: &Proof, show_all: bool, out: &mut impl Write) -> io::Resul
     let print_list = |pairs: &[NearestPair], out: &mut dyn Write| -> io::Result<()> {
         let close_pairs: Vec<_> = pairs
             .iter()
-            .filter(|pair| pair.proved < FAR_MM * 0.9)
+            .filter(|pair| pair.lower_bound < FAR_MM * 0.9)
             .collect();
         let row_count = if show_all {
             close_pairs.len()
@@ -190,22 +190,25 @@ fn print_proof(proof: &Proof, show_all: bool, out: &mut impl Write) -> io::Resul
         writeln!(
             out,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",
-            nearest.proved
+            nearest.lower_bound
         )?;
     }
     Ok(())
 }
 
 fn print_row(pair: &NearestPair, out: &mut dyn Write) -> io::Result<()> {
-    let seen = pair.seen.as_ref();
+    let witness = pair.witness.as_ref();
     let parts = format!("{}, {}", pair.first, pair.second);
     write!(
         out,
         "{:6.2} {:>6}   {parts:<44}",
-        pair.proved,
-        seen.map_or("-".to_owned(), |seen| format!("{:.2}", seen.mm))
+        pair.lower_bound,
+        witness.map_or("-".to_owned(), |clearance| format!("{:.2}", clearance.mm))
     )?;
-    if let Some(pose) = seen.map(|seen| seen.pose).or(pair.doubt) {
+    if let Some(pose) = witness
+        .map(|clearance| clearance.pose)
+        .or(pair.unproved_angles)
+    {
         for angle in pose {
             write!(out, " {angle:6.1}")?;
         }
