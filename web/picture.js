@@ -42,7 +42,7 @@ await page.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png')
 // The preview: the first room, with the robot in 3D.
 await page.setViewportSize({ width: 1600, height: 840 });
 await page.goto(`${address()}#room=start`);
-await page.locator('#solid').click();
+await page.locator('#button-3d').click();
 await page.waitForFunction(() => document.querySelector('#parts-said').textContent.startsWith('Click'));
 await page.clock.runFor(1500);
 await page.screenshot({ path: join(folder, 'preview.png') });

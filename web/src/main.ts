@@ -14,7 +14,7 @@ import { Predictor } from './predictor';
 import { canLag, load } from './robot';
 import { Session } from './session';
 import type { BoardBanner } from './session-state';
-import { messageOf } from './trouble';
+import { messageOf } from './problem';
 import { Alarm } from './view/alarm';
 import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
@@ -45,7 +45,7 @@ import { ScopeView } from './view/scope';
 import { Steering, gaitFor } from './view/steer';
 import { Setup } from './view/setup';
 import { Sketch } from './view/sketch';
-import { Troubles } from './view/troubles';
+import { ProblemList } from './view/problems';
 import { World } from './view/world';
 import { Writer } from './view/writer';
 import { WORDS, unknownWords } from './words';
@@ -62,7 +62,7 @@ declare global {
   }
 }
 
-const troubles = new Troubles();
+const problems = new ProblemList();
 
 async function start(): Promise<void> {
   const [module, choice] = await Promise.all([files.wasm(), RobotChoice.load()]);
@@ -92,11 +92,11 @@ async function start(): Promise<void> {
         'Is this board an Arduino UNO? By its USB chip it may also be a Nano, and this robot reaches into the boot section of a Nano. ' +
           'What is written there would ruin a Nano until a programmer at its pins repairs it. OK: it is a UNO.',
       ),
-    onTrouble(cause, message) {
+    onProblem(cause, message) {
       if (cause === 'fault' && message !== null) remote.vibrate();
       // A board without this firmware can get it at once.
       const remedy = { label: 'Write firmware and robot to it', action: () => flash.write('all') };
-      troubles.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
+      problems.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
   });
 
@@ -148,7 +148,7 @@ async function start(): Promise<void> {
   };
   document.addEventListener(ROOM_OPENED, () => void openMeasure());
   session.followRobot(() => void openMeasure());
-  new BoardRobot(session, troubles, ({ file, toml }) => {
+  new BoardRobot(session, problems, ({ file, toml }) => {
     choice.select(file);
     void replaceRobot(async () => {
       await loadChosenFile();
@@ -171,7 +171,7 @@ async function start(): Promise<void> {
 
   session.followRobot(({ words }) => {
     const missingWords = unknownWords([...drive.commands], words);
-    if (missingWords.length > 0) troubles.setMessage('page', `The core does not know these words of the page: ${missingWords.join(', ')}.`);
+    if (missingWords.length > 0) problems.setMessage('page', `The core does not know these words of the page: ${missingWords.join(', ')}.`);
   });
   effect(() => {
     const { link, banner, description, isReal } = session;
@@ -219,14 +219,14 @@ async function start(): Promise<void> {
   const loadChosenFile = async () => {
     try {
       await session.loadFile(choice.chosenFile);
-      troubles.setMessage('robot', null);
+      problems.setMessage('robot', null);
     } catch (error) {
       choice.select(session.file);
       if (!session.link) element('where').textContent = 'No robot could be read.';
-      troubles.setMessage('robot', messageOf(error));
+      problems.setMessage('robot', messageOf(error));
     }
   };
-  const ownRobot = new OwnRobot(session, troubles, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
+  const ownRobot = new OwnRobot(session, problems, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
   /** Loads another robot with `loadRobot`, and puts the user's changed robot aside, so that it is not lost. */
   const replaceRobot = async (loadRobot: () => Promise<unknown>) => {
     const saved = browserStorage.getChanges();
@@ -246,7 +246,7 @@ async function start(): Promise<void> {
       if (session.isReal) await session.disconnect();
       else if (await session.connect(await open())) setup.openNeededStep();
     } catch (error) {
-      troubles.setMessage('port', `No board is connected: ${messageOf(error)}`);
+      problems.setMessage('port', `No board is connected: ${messageOf(error)}`);
     }
   }
   connectButton.addEventListener('click', () => void connectBoard());
@@ -265,14 +265,14 @@ async function start(): Promise<void> {
   const requestedFile = addressFile ?? saved?.file;
   const isKnownFile = requestedFile === undefined || choice.select(requestedFile);
   await loadChosenFile();
-  const reportMissing = (file: string) => troubles.setMessage('robot', `This page has no ${file}.toml, which its address asks for.`);
+  const reportMissing = (file: string) => problems.setMessage('robot', `This page has no ${file}.toml, which its address asks for.`);
   if (addressFile !== null && !isKnownFile) reportMissing(addressFile);
   // The robot in the address takes precedence over a stored one.
   const isRobotInAddress = addressFile !== null || addressParts(location.hash).has('robot');
   if (saved && session.file === saved.file && !(await session.restoreSaved(saved)) && !isRobotInAddress) {
     const remedy = { label: 'Download what was changed', action: () => void downloadRobot(saved.toml, saved.floor) };
     const message = `${saved.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
-    troubles.setMessage('robot', message, remedy);
+    problems.setMessage('robot', message, remedy);
   }
   if (await text.loadFromAddress()) address.start();
   if (isRobotInAddress) ownRobot.putAside(saved);
@@ -338,5 +338,5 @@ function boardText(name: string, banner: BoardBanner | undefined, hash: string):
 openRoom(location.hash);
 start().catch((error: unknown) => {
   element('where').textContent = 'The page cannot start.';
-  troubles.setMessage('page', messageOf(error));
+  problems.setMessage('page', messageOf(error));
 });

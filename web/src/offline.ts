@@ -1,7 +1,7 @@
 /// <reference types="vite/client" />
 // The page without a network: a service worker (service-worker.js) stores all files, and a newer version is loaded only
 // at the user's request, never by itself while the robot walks.
-import { messageOf } from './trouble';
+import { messageOf } from './problem';
 
 /** Stores the page on this machine. Calls `onUpdate` with a function that loads a newer version once one is ready. */
 export async function installServiceWorker(onUpdate: (load: () => void) => void): Promise<void> {

@@ -1,20 +1,20 @@
 // The robot in WebAssembly, which computes everything; no formula is repeated in TypeScript. The types come from
 // wasm/src.
-import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type NoTrial, type Refused, Robot } from '../generated/lizard';
+import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type Refused, type RefusedTrial, Robot } from '../generated/lizard';
 
 export { calibrationText, parseBanner, parseCalibration, parsePoseReport, parseStatus, Robot } from '../generated/lizard';
 export type {
-  Banner, Bars, Calibration, Description, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, NoTrial, Place, ReachArea, Refused, RoundPath, Routine, Scene, ServoSettings, Status, Trial,
+  Banner, Bars, Calibration, Description, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, Place, Refused, RefusedTrial, RoundPath, Routine, Scene, ServoSettings, SingularityMap, Status, Trial, Workspace,
 } from '../generated/lizard';
 export type {
-  Legs as Kind, Lengths as TriedLengths, Map as SingularityMap, ModelEntry as ServoModel, Movement as Displacement, PlateEntry as Plate, Spot as Point,
+  Legs as Kind, Lengths as TriedLengths, ModelEntry as ServoModel, Movement as Displacement, PlateEntry as Plate, Spot as Point,
 } from '../generated/lizard';
 
 export type Gait = Description['gaits'][number];
 export type Length = Description['lengths'][number];
 export type End = DrawnGait['end'];
 /** A value of an edited gait for which a refusal can offer a valid one. */
-export type Alternative = NoTrial['instead'][number]['what'];
+export type Alternative = RefusedTrial['alternatives'][number]['what'];
 /** The predictions of a robot's gaits, in the robot's order; null for a gait that could not be predicted. */
 export type Predictions = (GaitPrediction | null)[];
 

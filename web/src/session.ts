@@ -14,7 +14,7 @@ import { UnoLink } from './link/uno-link';
 import { isRefused, parseBanner, parsePoseReport, parseStatus } from './robot';
 import type { Banner, Description, Floor, Four, Frame, Predictions, Refused, Robot, Status } from './robot';
 import { type BoardBanner, FULL_PACE, SessionState } from './session-state';
-import { type Cause, messageOf } from './trouble';
+import { type Cause, messageOf } from './problem';
 import { SimulatedBoard } from './uno/board';
 import { type CycleDisplacement, WalkedPath } from './walked-path';
 import { DONE_LINE, GAITS, WORDS } from './words';
@@ -58,7 +58,7 @@ export interface SessionListener {
   /** Asks the user whether the board is a UNO: on a Nano, writing would overwrite the boot loader. */
   confirmUno(): boolean;
   /** Called with the current problem, or null once it is solved. */
-  onTrouble(cause: Cause, message: string | null): void;
+  onProblem(cause: Cause, message: string | null): void;
 }
 
 /** Called with the progress of a write: `done` of the `total` pages of a step are finished. */
@@ -271,11 +271,11 @@ export class Session {
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
     link.onGone = (reason) => {
-      void this.simulate().then(() => this.listener.onTrouble('port', `The board is gone: ${reason} The simulation goes on.`));
+      void this.simulate().then(() => this.listener.onProblem('port', `The board is gone: ${reason} The simulation goes on.`));
     };
     link.onReach = (isInReach) => void this.handleReach(link, isInReach);
     await this.attach(link);
-    this.listener.onTrouble('port', null);
+    this.listener.onProblem('port', null);
     // Opening a USB port has reset the board. Bytes sent before its banner would go to the boot loader.
     const isRadio = link.kind === 'radio';
     const hasSentBanner = !isRadio && (await this.waitForBanner());
@@ -291,7 +291,7 @@ export class Session {
 
   private reportSilentModule(link: Link): void {
     this.state.banner.value = null;
-    this.listener.onTrouble('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
+    this.listener.onProblem('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
   }
 
   /**
@@ -303,12 +303,12 @@ export class Session {
     this.deadman.stopRepeating();
     this.state.isSilent.value = !isInReach;
     const message = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
-    this.listener.onTrouble('port', isInReach ? null : message);
+    this.listener.onProblem('port', isInReach ? null : message);
     if (!isInReach) return;
     for (let n = 0; n < MAX_ATTEMPTS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
       if (!this.banner) this.state.banner.value = 'unknown';
-      this.listener.onTrouble('board', null);
+      this.listener.onProblem('board', null);
       return this.watch();
     }
   }
@@ -338,7 +338,7 @@ export class Session {
     }
     if (this.link !== link) return;
     this.state.banner.value = null;
-    this.listener.onTrouble('board', message);
+    this.listener.onProblem('board', message);
   }
 
   /** Makes the board report its poses. */
@@ -352,7 +352,7 @@ export class Session {
     const hasStopped = await this.stop();
     await this.simulate();
     if (!hasStopped) {
-      this.listener.onTrouble('port', 'The board that was left did not say that it stops. If it walks on, press its reset button.');
+      this.listener.onProblem('port', 'The board that was left did not say that it stops. If it walks on, press its reset button.');
     }
   }
 
@@ -410,7 +410,7 @@ export class Session {
       this.startDialogue();
       this.setGait('');
     });
-    for (const cause of ['line', 'board', 'fault'] as const) this.listener.onTrouble(cause, null);
+    for (const cause of ['line', 'board', 'fault'] as const) this.listener.onProblem(cause, null);
   }
 
   private startDialogue(): void {
@@ -455,7 +455,7 @@ export class Session {
     this.setPace(FULL_PACE);
     this.isWatching = false;
     this.deadman.reset();
-    this.listener.onTrouble('board', null);
+    this.listener.onProblem('board', null);
     this.state.banner.value = parseBanner(line) ?? 'unknown';
     this.resolveBanner();
     // A byte would cancel `boot`.
@@ -502,12 +502,12 @@ export class Session {
       const pendingAnswer = this.dialogue.ask(line, isQuiet, timeoutMs);
       if (needsOwnDeadman && this.isBoardWalking) void deadman.engage();
       const answer = await pendingAnswer;
-      if (!isQuiet) this.listener.onTrouble('line', null);
+      if (!isQuiet) this.listener.onProblem('line', null);
       deadman.noteLine(command, answer.ok);
       return answer;
     } catch (error) {
       // A quiet line is sent again later; until then the page shows that the robot is silent.
-      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.onTrouble('line', `${messageOf(error)}.`);
+      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.onProblem('line', `${messageOf(error)}.`);
       return null;
     } finally {
       if (isDrive) {
@@ -532,7 +532,7 @@ export class Session {
   /** Handles a status as soon as its line is received: later it could overwrite a newer state. */
   private handleStatus(status: Status): void {
     if (status.pace !== null) this.setPace(status.pace);
-    this.listener.onTrouble('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
+    this.listener.onProblem('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
     const gait = status.gait.replaceAll('-', ' ');
     // The robot reports `center` as a pose, and the rest of a routine as `rest`.
     const isSameActivity = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === null);
@@ -593,7 +593,7 @@ export class Session {
     if (this.link !== link) return null;
     if (!hasSentBanner) {
       this.state.banner.value = null;
-      this.listener.onTrouble('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
+      this.listener.onProblem('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
       return 'it sends no banner of this firmware';
     }
     const boardHash = isBanner(this.banner) ? this.banner.robot?.hash : null;
@@ -616,7 +616,7 @@ export class Session {
         simulated?.advance(stepMs);
       }
     } catch (error) {
-      this.listener.onTrouble('simulation', `The simulated UNO has stopped: ${messageOf(error)}`);
+      this.listener.onProblem('simulation', `The simulated UNO has stopped: ${messageOf(error)}`);
       throw error;
     }
   }

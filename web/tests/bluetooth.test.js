@@ -41,7 +41,7 @@ for (const module of [HM10, NORDIC]) {
     const receivedText = await page.evaluate(() => window.receivedText);
     assert.ok(receivedText.indexOf('deadman 901\n') < receivedText.indexOf('walk\n'), receivedText);
     assert.match(receivedText, /OK\+CONN.*\n/);
-    assert.equal(await page.locator('#trouble').isVisible(), false);
+    assert.equal(await page.locator('#problems').isVisible(), false);
     assert.equal(await page.locator('#setup').isVisible(), false, 'no dialog offers to write firmware by radio');
     for (const control of ['#flash-write', '#flash-robot', '#flash-file', '#reset']) assert.ok(await page.locator(control).isDisabled(), control);
   });
@@ -52,15 +52,15 @@ test('a robot whose link is cut stops, and the page reconnects by itself', async
   await radio.run(1000);
   const cutMs = await pageTimeOf(page);
   await radio.takeOutOfRange();
-  await radio.runUntil('the loss of the link is shown', async () => (await text(page, '#trouble')).includes('The board at HMSoft is out of reach.'));
+  await radio.runUntil('the loss of the link is shown', async () => (await text(page, '#problems')).includes('The board at HMSoft is out of reach.'));
   await radio.run(2000);
   assert.match(await text(page, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
   const lastMoveMs = await page.evaluate(() => window.lastMoveMs);
   assert.ok(lastMoveMs - cutMs <= 901 + 40, `it moved for ${lastMoveMs - cutMs} ms`);
   await radio.bringIntoRange();
   await radio.runUntil('the robot is stopped', async () => (await activityOf(page)) === 'stop');
-  await page.locator('#trouble', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
-  assert.ok(!(await text(page, '#trouble')).includes('out of reach'));
+  await page.locator('#problems', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
+  assert.ok(!(await text(page, '#problems')).includes('out of reach'));
   assert.equal(await page.locator('#alarm').isVisible(), false);
   await page.locator('#gaits button[data-command="walk"]').click();
   await radio.runUntil('the robot walks again', async () => (await activityOf(page)) === 'walk');
@@ -77,7 +77,7 @@ test('a trim that was set out of range shows the robot\'s value when the robot a
   await radio.takeOutOfRange();
   await trim.fill('5');
   await radio.run(4000);
-  await page.locator('#trouble', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
+  await page.locator('#problems', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
   assert.equal(await trim.inputValue(), '5');
   await radio.bringIntoRange();
   await radio.runUntil('the trim is read again', async () => (await trim.inputValue()) === '0');
@@ -101,8 +101,8 @@ test('a module through which no robot answers is named', async () => {
   radio = await Radio.open(HM10, { hasRobot: false });
   const { page } = radio;
   await radio.pick();
-  await radio.runUntil('the silence is shown', async () => (await text(page, '#trouble')).includes('no robot answers'));
-  assert.match(await text(page, '#trouble'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
+  await radio.runUntil('the silence is shown', async () => (await text(page, '#problems')).includes('no robot answers'));
+  assert.match(await text(page, '#problems'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
   assert.equal(await page.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
 });
 
@@ -111,22 +111,22 @@ test('picking no Bluetooth module reports no problem', async () => {
   const { page } = radio;
   await radio.pick(false);
   await radio.run(500);
-  assert.equal(await page.locator('#trouble').isVisible(), false);
+  assert.equal(await page.locator('#problems').isVisible(), false);
   assert.match(await text(page, '#where'), /simulated UNO/);
 });
 
 test('the page says that a machine has no Bluetooth', async () => {
   radio = await Radio.open(HM10, { adapter: 'absent' });
   await radio.page.locator('#radio').click();
-  await radio.page.locator('#trouble', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
+  await radio.page.locator('#problems', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
 });
 
 test('if Bluetooth is forbidden, the page says where to allow it', async () => {
   radio = await Radio.open(HM10, { isAllowed: false, hasRobot: false });
   const { page } = radio;
   await page.locator('#radio').click();
-  await page.locator('#trouble', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
-  assert.match(await text(page, '#trouble'), /disallowed by permissions policy/, 'the browser itself has refused it');
+  await page.locator('#problems', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
+  assert.match(await text(page, '#problems'), /disallowed by permissions policy/, 'the browser itself has refused it');
 });
 
 test('a phone whose screen goes off stops its robot with the last line that it sends', async () => {
@@ -151,7 +151,7 @@ test('when a phone falls asleep without warning, its robot stops, and the page r
   const lastMoveMs = await page.evaluate(() => window.lastMoveBoardMs);
   assert.ok(lastMoveMs - sleepMs > 300 && lastMoveMs - sleepMs <= 901 + 40, `it moved for ${lastMoveMs - sleepMs} ms`);
   await page.clock.fastForward(3000);
-  await radio.runUntil('the reason is shown', async () => (await text(page, '#trouble')).includes('no line had reached it for too long'));
+  await radio.runUntil('the reason is shown', async () => (await text(page, '#problems')).includes('no line had reached it for too long'));
   assert.equal(await activityOf(page), 'stop');
 });
 

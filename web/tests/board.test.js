@@ -23,7 +23,7 @@ async function openWalking() {
 
 test('a new UNO is identified after some seconds, and one button writes the firmware', async () => {
   const page = await openWithErasedBoard();
-  await page.locator('#trouble', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
+  await page.locator('#problems', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
   assert.equal(await text(page, '#where'), 'on a board on USB without this firmware');
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).click();
   await page.locator('#flash-said', { hasText: 'calling the boot loader' }).waitFor();
@@ -34,13 +34,13 @@ test('a new UNO is identified after some seconds, and one button writes the firm
   await page.clock.runFor(8000);
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await page.locator(control).isEnabled(), control);
-  assert.equal(await page.locator('#trouble').isVisible(), false, 'the board sends its banner, so the problem is solved');
+  assert.equal(await page.locator('#problems').isVisible(), false, 'the board sends its banner, so the problem is solved');
   await page.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
 });
 
 test('for a board that does not answer, the page asks whether it is a UNO or a Nano', async () => {
   const page = await openWithDeafBoard();
-  await runUntil(page, 'the page asks', async () => /no boot loader answers\. Is it a UNO or a Nano\?/.test(await text(page, '#trouble')));
+  await runUntil(page, 'the page asks', async () => /no boot loader answers\. Is it a UNO or a Nano\?/.test(await text(page, '#problems')));
 });
 
 test('a board that its port does not reset is queried for its state and tracked', async () => {
@@ -52,7 +52,7 @@ test('a board that its port does not reset is queried for its state and tracked'
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   assert.match(await text(page, '#where'), /^on a board on USB that has not restarted/);
   assert.equal(await text(page, '#doing'), 'stand');
-  assert.equal(await page.locator('#trouble').isVisible(), false);
+  assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
 test('choosing another robot keeps the board connected', async () => {
@@ -70,23 +70,23 @@ test('choosing another robot keeps the board connected', async () => {
 
 test('a board with another robot of the list is reported, and one press shows its own robot', async () => {
   const page = await openWithBoard('large', 8000);
-  const offer = page.locator('#trouble').getByRole('button', { name: 'Show large' });
+  const offer = page.locator('#problems').getByRole('button', { name: 'Show large' });
   await offer.waitFor();
-  assert.match(await text(page, '#trouble'), /^The board on USB has another robot, large, and is drawn and predicted here as robot\.toml\./);
+  assert.match(await text(page, '#problems'), /^The board on USB has another robot, large, and is drawn and predicted here as robot\.toml\./);
   await offer.click();
   await page.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThisRobot);
   assert.match(await text(page, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
-  await page.locator('#trouble', { hasText: 'another robot' }).waitFor({ state: 'detached' });
+  await page.locator('#problems', { hasText: 'another robot' }).waitFor({ state: 'detached' });
   assert.equal(await page.evaluate(() => window.lizard.isReal), true);
   // From here on no file of the page equals this robot.
   await page.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
-  await page.locator('#trouble', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
+  await page.locator('#problems', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
   await page.evaluate(() => {
     const { lizard } = window;
     lizard.banner.robot.hash = '00000000';
     return lizard.change(lizard.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
   });
-  await page.locator('#trouble', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();
+  await page.locator('#problems', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();
 });
 
 test('the alarm for a board that is out of range ends when the board is gone', async () => {
@@ -114,7 +114,7 @@ test('a board that does not confirm the stop is reported', async () => {
   await page.evaluate(() => (window.attachedBoard.send = () => {}));
   await page.locator('#connect').click();
   await page.clock.runFor(3000);
-  await page.locator('#trouble', { hasText: 'did not say that it stops' }).waitFor();
+  await page.locator('#problems', { hasText: 'did not say that it stops' }).waitFor();
 });
 
 test('a page that is closed while a board walks stops it, and the browser asks', async () => {
@@ -191,7 +191,7 @@ test('a HEX file of another program is identified, and written only when the use
   await page.locator('#flash-yes').click();
   await runUntil(page, 'the board is written', async () => /^(not )?written/.test(await text(page, '#flash-said')));
   await page.clock.runFor(3000);
-  await page.locator('#trouble', { hasText: 'is not this firmware: it sends no banner.' }).waitFor();
+  await page.locator('#problems', { hasText: 'is not this firmware: it sends no banner.' }).waitFor();
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
 });
 

@@ -150,7 +150,7 @@ test('stored changes to a file that has changed since are dropped, with a messag
   await page.waitForFunction(() => location.hash.includes('robot='));
   await page.goto(address());
   await page.waitForFunction(() => window.lizard);
-  await page.locator('#trouble', { hasText: 'robot.toml is not the file of last time' }).waitFor();
+  await page.locator('#problems', { hasText: 'robot.toml is not the file of last time' }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8'));
   const lostToml = await download(page, 'Download what was changed');
   assert.deepEqual([readNumber(lostToml, 'leg', 'crank'), readNumber(lostToml, 'body', 'mass')], [40, 412], 'the changes are not lost');

@@ -97,7 +97,7 @@ test('a search stopped midway returns the best gait so far, and the page can sea
 
 test('the found gait walks beside the previous one, and is faster by the promised ratio', async () => {
   const page = await openEditor({ rounds: 200 });
-  await page.locator('#solid').click();
+  await page.locator('#button-3d').click();
   await startSearch(page);
   await waitForTries(page, 21);
   await page.getByRole('button', { name: 'Stop the search' }).click();
@@ -106,7 +106,7 @@ test('the found gait walks beside the previous one, and is faster by the promise
   const [, previousSpeed, foundSpeed] = rows.map((row) => row.split('\t')).find(([name]) => name === 'speed').map(Number.parseFloat);
   assert.ok(foundSpeed > previousSpeed, rows.join());
   await page.getByRole('button', { name: 'See both walk' }).click();
-  assert.ok(await page.locator('#space').isHidden(), 'the drawing from above shows both robots');
+  assert.ok(await page.locator('#canvas-3d').isHidden(), 'the drawing from above shows both robots');
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'mine');

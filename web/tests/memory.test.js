@@ -36,9 +36,9 @@ test('gaits that are refused, and those tried for an offer, use no more memory',
   let bars;
   const growthBytes = measureGrowth(100, (robot, n) => {
     bars ??= robot.bars(1);
-    const { refused, instead } = robot.trial({ ...bars, amplitude: 30 + n / 20 });
+    const { refused, alternatives } = robot.trial({ ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);
-    assert.equal(instead[0].what, 'amplitude');
+    assert.equal(alternatives[0].what, 'amplitude');
   });
   assert.equal(growthBytes, 0);
 });

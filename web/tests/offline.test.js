@@ -62,7 +62,7 @@ test('once opened, the page works without a server, with any of its robots', asy
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 3000);
   assert.ok((await page.evaluate(() => window.lizard.last.place.y)) > 20);
-  assert.equal(await page.locator('#trouble').isVisible(), false);
+  assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
 test('a newer page is offered, loaded as a whole on request, and replaces the older one', async () => {

@@ -281,7 +281,7 @@ test('unplugging the board is reported, and the simulation continues', async () 
   await page.waitForFunction(() => window.attachedBoard);
   await page.clock.runFor(4000);
   await page.evaluate(() => window.unplug());
-  await page.locator('#trouble', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
+  await page.locator('#problems', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
   await page.clock.runFor(2000);
   assert.match(await text(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
 });

@@ -43,14 +43,14 @@ async function openParts(options) {
 
 /** Clicks on the picture at a fraction of its width and height, and returns the message. */
 async function clickAt(page, xShare, yShare) {
-  const { x, y, width, height } = await page.locator('#space').boundingBox();
+  const { x, y, width, height } = await page.locator('#canvas-3d').boundingBox();
   await page.mouse.click(x + xShare * width, y + yShare * height);
   return messageOf(page).innerText();
 }
 
 /** Turns the view to look from straight above. */
 async function lookFromAbove(page) {
-  for (let n = 0; n < 12; n++) await page.locator('#space').press('ArrowUp');
+  for (let n = 0; n < 12; n++) await page.locator('#canvas-3d').press('ArrowUp');
 }
 
 test('an unprintable length is reported at once with the nearest printable one, as by lizard parts', async () => {
@@ -107,13 +107,13 @@ test('an unprintable length is reported at once with the nearest printable one, 
 test('while a length is dragged, the two parts that collide are red in 3D, and their overlap is shown in mm', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
-  await page.locator('#solid').click();
+  await page.locator('#button-3d').click();
   await page.getByText('Click a part for its name').waitFor();
   const slider = page.locator('#length-slide');
   await slider.focus();
   await page.waitForFunction(() => Number(document.querySelector('#length-slide').max) > 52);
   const countRedPixels = async () => {
-    const picture = (await page.locator('#space').screenshot()).toString('base64');
+    const picture = (await page.locator('#canvas-3d').screenshot()).toString('base64');
     return page.evaluate(async (picture) => {
       const bytes = Uint8Array.from(atob(picture), (letter) => letter.charCodeAt(0));
       const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
@@ -287,13 +287,13 @@ test('the parts move with the robot', async () => {
   // Finds the centre of the pixels that show the head's plate. Seen from above, the robot's head is up and to the left.
   const findHead = () =>
     page.evaluate(() => {
-      const space = document.querySelector('#space');
-      const { left, top, width, height } = space.getBoundingClientRect();
+      const canvas = document.querySelector('#canvas-3d');
+      const { left, top, width, height } = canvas.getBoundingClientRect();
       const hits = [];
       for (let x = 0.15 * width; x < 0.5 * width; x += 0.025 * width) {
         for (let y = 0.02 * height; y < 0.5 * height; y += 0.025 * width) {
           for (const type of ['pointerdown', 'pointerup']) {
-            space.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: left + x, clientY: top + y, bubbles: true }));
+            canvas.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: left + x, clientY: top + y, bubbles: true }));
           }
           if (document.querySelector('#parts-said').textContent.startsWith('head plate')) hits.push([x, y]);
         }

@@ -31,7 +31,7 @@ const screenPoint = (page, [x, y]) =>
 /** Draws a circle around the head's neutral point with the mouse. */
 async function draw(page, radiusMm, cornerCount = 40) {
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
-  const [x, y] = await page.evaluate(() => window.lizard.robot.reachArea(0).neutral);
+  const [x, y] = await page.evaluate(() => window.lizard.robot.workspace(0).neutral);
   for (let n = 0; n <= cornerCount; n++) {
     const angle = (2 * Math.PI * n) / cornerCount;
     const corner = [x + radiusMm * Math.cos(angle), y + radiusMm * Math.sin(angle)];

@@ -210,7 +210,7 @@ test('after every change the address is that of the shown robot', async () => {
     location.hash = '#file=nothing';
     history.replaceState(null, '', '#file=large');
   });
-  await otherPage.locator('#trouble', { hasText: 'This page has no nothing.toml' }).waitFor();
+  await otherPage.locator('#problems', { hasText: 'This page has no nothing.toml' }).waitFor();
 });
 
 test('a hostile file runs no script', async () => {
@@ -232,7 +232,7 @@ test('opening a link or another robot stores the user\'s own robot, and a button
   await textBoxOf(page).fill(ownToml);
   await page.locator('#robot-take').click();
   await waitForRobot(page, ownToml);
-  const backButton = page.locator('#trouble').getByRole('button', { name: 'Back to my own robot' });
+  const backButton = page.locator('#problems').getByRole('button', { name: 'Back to my own robot' });
   // A link from somebody else, opened in another tab.
   await page.goto('about:blank');
   await page.goto(`${address()}#file=large`);

@@ -111,7 +111,7 @@ test('the three doors of the first screen lead to rooms', async () => {
 test('a closed room renders nothing, even if its panels are unfolded', async () => {
   const page = await openStanding();
   for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(page, panel);
-  await page.locator('#solid').click();
+  await page.locator('#button-3d').click();
   // The parts fill their lists when they are loaded.
   await page.waitForFunction(() => document.querySelector('#part').length > 10);
   await linkTo(page, 'board').click();
@@ -143,12 +143,12 @@ test('one press changes between 3D and the drawing from above, and three.js is l
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
   for (const room of ROOMS.slice(1)) await linkTo(page, room).click();
   assert.deepEqual(loadedPaths.filter((path) => /robot-view|parts/.test(path)), []);
-  await page.locator('#solid').click();
+  await page.locator('#button-3d').click();
   await page.waitForFunction(() => document.querySelector('#part').length > 10);
   assert.ok(loadedPaths.some((path) => /robot-view/.test(path)));
-  assert.ok(await page.locator('#space').isVisible());
-  await page.locator('#solid').click();
-  assert.ok(!(await page.locator('#space').isVisible()));
+  assert.ok(await page.locator('#canvas-3d').isVisible());
+  await page.locator('#button-3d').click();
+  assert.ok(!(await page.locator('#canvas-3d').isVisible()));
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -209,12 +209,12 @@ test('a word of the page that the core does not know is reported', async () => {
   const body = Buffer.from(wasm.replaceAll('factory', 'faktory'), 'latin1');
   await page.route('**/lizard.wasm', (route) => route.fulfill({ body, contentType: 'application/wasm' }));
   await page.goto(address());
-  await page.locator('#trouble', { hasText: 'The core does not know these words of the page: factory.' }).waitFor();
+  await page.locator('#problems', { hasText: 'The core does not know these words of the page: factory.' }).waitFor();
 });
 
 test('the core knows every word that a button sends', async () => {
   const page = await openStanding();
-  assert.equal(await page.locator('#trouble').isVisible(), false);
+  assert.equal(await page.locator('#problems').isVisible(), false);
   const sentCommands = await page.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));
   const { words, gaits } = await page.evaluate(() => window.lizard.description);
   const knownWords = [...words, ...gaits.map(({ command }) => command)];

@@ -138,7 +138,7 @@ test('a write that begins right after the banner is not disturbed', async () => 
   await page.locator('#flash-write').click();
   await page.clock.runFor(4000);
   assert.match(await text(page, '#flash-said'), /^(read|writ|verify)ing/);
-  assert.equal(await page.locator('#trouble').innerText(), '');
+  assert.equal(await page.locator('#problems').innerText(), '');
 });
 
 test('a board unplugged while the firmware is written does nothing, and can be written again', async () => {
@@ -181,7 +181,7 @@ test('an older Nano, whose boot loader has another baud rate, is found, written 
   const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => Object.assign(window, { flashedRobot: null, loaderBaud: 57_600, usbVendor: 0x1a86 }));
   await page.locator('#connect').click();
-  await runUntil(page, 'the board is identified', async () => (await text(page, '#trouble')).startsWith('The board is an Arduino Nano, an ATmega328P by its boot loader'));
+  await runUntil(page, 'the board is identified', async () => (await text(page, '#problems')).startsWith('The board is an Arduino Nano, an ATmega328P by its boot loader'));
   await unfoldFlashPanel(page);
   await page.locator('#flash-write').click();
   await waitForMessage(page, /^no answer; the board is called again/);
@@ -201,7 +201,7 @@ test('an older Nano that is unplugged while its baud rate is set is reported, an
     Object.assign(window, { flashedRobot: null, loaderBaud: 57_600, onPortOpen });
   });
   await page.locator('#connect').click();
-  await runUntil(page, 'the loss of the board is shown', async () => (await text(page, '#trouble')).startsWith('The board is gone: The device has been lost. The simulation goes on.'));
+  await runUntil(page, 'the loss of the board is shown', async () => (await text(page, '#problems')).startsWith('The board is gone: The device has been lost. The simulation goes on.'));
   await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
   assert.match(await text(page, '#where'), /simulated UNO/);
 });

@@ -3,7 +3,7 @@
 import type { SearchTask } from '../../generated/tune';
 import { Helper } from '../helper';
 import type { OnFloor, Trial } from '../robot';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import type { BestGait, FasterWorkerApi } from './faster-worker';
 
 export type { BestGait };

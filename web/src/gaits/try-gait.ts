@@ -26,7 +26,7 @@ export async function tryGait(session: Session, gait: EditedGait): Promise<Refus
  */
 export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   if (session.isReal) {
-    return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', meaning: null, line: null, key: '' };
+    return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', consequence: null, line: null, key: '' };
   }
   const refusal = await applyGait(session, gait);
   if (refusal) return refusal;

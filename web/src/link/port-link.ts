@@ -1,6 +1,6 @@
 // The link to a board by Web Serial, over USB or through an HC-05, a Bluetooth module that the system offers as a
 // serial port. Chromium browsers and newer Firefox have Web Serial, over https or on localhost.
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { BAUD, GONE_MESSAGE, sleep, type Link } from './link';
 
 /** The UUID of Bluetooth's serial port profile, which an HC-05 has. */

@@ -1,5 +1,5 @@
 // Formats measured gaits as tables, as an SVG picture to share, and as CSV for a spreadsheet.
-import type { Part as Component, Report } from '../../generated/measure';
+import type { Component, Report } from '../../generated/measure';
 
 // The layout of the picture, px.
 const PICTURE_WIDTH = 700;

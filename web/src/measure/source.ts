@@ -1,5 +1,5 @@
 // A source of pictures, a camera or a film file, that gives each picture its time on the film's clock.
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 
 /** Largest number of pictures of a film file that wait to be processed. */
 const MAX_WAITING_PICTURES = 4;

@@ -2,7 +2,7 @@
 // responsive. No picture leaves the machine.
 import { expose } from 'comlink';
 
-import { type Asked, Camera, initSync, type TagEntry } from '../../generated/measure';
+import { Camera, initSync, type MeasureRequest, type TagEntry } from '../../generated/measure';
 
 /** The tags found in a picture, the picture's width and height, px, and the time that the search took, ms. */
 export interface Detection {
@@ -68,7 +68,7 @@ const api = {
       const luma = 'codedWidth' in picture ? await lumaOf(picture).catch(() => null) : null;
       const pixels = luma ?? rgbaOf(picture, width, height);
       picture.close();
-      return { tags: camera.look(width, height, pixels, seconds, isKept), size: [width, height], searchMs: performance.now() - startMs };
+      return { tags: camera.findTags(width, height, pixels, seconds, isKept), size: [width, height], searchMs: performance.now() - startMs };
     }),
 
   /** Discards the film and starts a new one. */
@@ -79,7 +79,7 @@ const api = {
     }),
 
   /** Measures gaits in the film. Throws the reason if they cannot be measured. */
-  measure: (request: Asked) => runInTurn(() => camera.measure(request)),
+  measure: (request: MeasureRequest) => runInTurn(() => camera.measure(request)),
 
   /** Returns the sheet of tags as PDF, for US Letter paper if `isLetter`, else for A4. */
   sheet: (isLetter: boolean) => Camera.sheet(isLetter) as Uint8Array<ArrayBuffer>,

@@ -1,7 +1,7 @@
 // The robot's parts, made by a worker: solids, their places at a pose, and all files as one archive.
 import { proxy, type Remote } from 'comlink';
 
-import type { Meeting as Clash, ModelEntry, Refused } from '../../generated/parts';
+import type { Clash, ModelEntry, Refused } from '../../generated/parts';
 import { files } from '../files';
 import { Helper } from '../helper';
 import type { PartsWorkerApi, Progress } from './worker';
@@ -21,9 +21,9 @@ export class UnfitError extends Error {
   /** The two parts that overlap or come too close; null for another reason. */
   readonly clash: Clash | null;
 
-  constructor({ refused, meeting }: Refused) {
+  constructor({ refused, clash }: Refused) {
     super(refused);
-    this.clash = meeting;
+    this.clash = clash;
   }
 }
 

@@ -7,7 +7,7 @@ import { browserStorage } from '../browser-storage';
 import { isRefused, Robot } from '../robot';
 import type { Session } from '../session';
 import { robotName } from './setup/board';
-import type { Troubles } from './troubles';
+import type { ProblemList } from './problems';
 
 /** A robot that the page can show: the name of its file, and its robot.toml, which the user may have changed. */
 interface KnownRobot {
@@ -22,7 +22,7 @@ export class BoardRobot {
   /** `showRobot` loads a robot into the page. */
   constructor(
     private readonly session: Session,
-    private readonly troubles: Troubles,
+    private readonly problems: ProblemList,
     private readonly showRobot: (robot: KnownRobot) => void,
   ) {
     effect(() => void this.update());
@@ -32,12 +32,12 @@ export class BoardRobot {
   private async update(): Promise<void> {
     const { session } = this;
     const { otherRobot } = session;
-    if (!session.isReal || !otherRobot) return this.troubles.setMessage('other', null);
+    if (!session.isReal || !otherRobot) return this.problems.setMessage('other', null);
     const knownRobot = await this.findByHash(otherRobot.hash);
     if (session.otherRobot?.hash !== otherRobot.hash) return;
     const message = `The ${session.link.name} has another robot, ${otherRobot.name}, and is drawn and predicted here as ${robotName(session)}.`;
-    if (!knownRobot) return this.troubles.setMessage('other', `${message} This page does not know it: open its robot.toml in Build, or write this one.`);
-    this.troubles.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => this.showRobot(knownRobot) });
+    if (!knownRobot) return this.problems.setMessage('other', `${message} This page does not know it: open its robot.toml in Build, or write this one.`);
+    this.problems.setMessage('other', message, { label: `Show ${otherRobot.name}`, action: () => this.showRobot(knownRobot) });
   }
 
   /**

@@ -2,7 +2,7 @@
 import { loadBoard } from '../board';
 import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { WORDS } from '../words';
 import { element } from './canvas';
 import { make } from './make';

@@ -4,7 +4,7 @@
 import type { Clash } from '../parts/workshop';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { element } from './canvas';
 import type { PartsView } from './parts';
 

@@ -3,7 +3,7 @@ import { effect } from '@preact/signals-core';
 
 import { loadBoard } from '../board';
 import { NO_WRITING_BY_RADIO, type Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { element } from './canvas';
 import { reveal } from './rooms';
 import type { WriteContent, Writer } from './writer';

@@ -43,10 +43,10 @@ export class MapView {
     const { context, width, height } = surface;
     if (this.background?.width !== this.canvas.width) this.background = this.drawBackground(map);
     context.drawImage(this.background, 0, 0, width, height);
-    const scale = width / (map.to - map.from);
+    const scale = width / (map.max_angle - map.min_angle);
     const pixelOf = ([left, right]: [number, number]): [number, number] => [
-      (left - map.from) * scale,
-      height - (right - map.from) * scale,
+      (left - map.min_angle) * scale,
+      height - (right - map.min_angle) * scale,
     ];
     context.strokeStyle = palette().a1;
     context.lineWidth = 1.5;
@@ -83,14 +83,14 @@ export class MapView {
       context.fillRect((left - 0.5) * cellSize, size - (right + 0.5) * cellSize, cellSize + 0.6, cellSize + 0.6);
     });
     context.globalAlpha = 1;
-    const scale = size / (map.to - map.from);
+    const scale = size / (map.max_angle - map.min_angle);
     const dotRadius = Math.max(1.2, size / 160);
     for (const { kind, points } of map.curves) {
       context.fillStyle = kind === 'couplers' ? colours.alarm : colours.steel;
       const radiusFactor = kind === 'couplers' ? 2.5 : 1;
       for (const [left, right] of points) {
         context.beginPath();
-        context.arc((left - map.from) * scale, size - (right - map.from) * scale, dotRadius * radiusFactor, 0, 2 * Math.PI);
+        context.arc((left - map.min_angle) * scale, size - (right - map.min_angle) * scale, dotRadius * radiusFactor, 0, 2 * Math.PI);
         context.fill();
       }
     }

@@ -2,7 +2,7 @@
 // protocol by which the page drives the robot, and the results.
 import { transfer } from 'comlink';
 
-import type { AskedWalk } from '../../generated/measure';
+import type { RequestedWalk } from '../../generated/measure';
 import { files } from '../files';
 import { Helper } from '../helper';
 import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
@@ -12,7 +12,7 @@ import type { FilmWorkerApi } from '../measure/worker';
 import type { Predictor } from '../predictor';
 import type { Description, Gait } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { WORDS } from '../words';
 import { element, setText } from './canvas';
 import { saveFile } from './download';
@@ -237,7 +237,7 @@ export class MeasureView {
   }
 
   /** The whole film as one walk of the chosen gait; empty if the gaits are to be recognized by their paths. */
-  private get wholeFilmWalks(): AskedWalk[] {
+  private get wholeFilmWalks(): RequestedWalk[] {
     const gait = this.gaitList.value;
     return gait === '' ? [] : [{ gait, during: null }];
   }
@@ -301,7 +301,7 @@ export class MeasureView {
   }
 
   /** Returns the walks with the gaits' names in robot.toml instead of their commands. */
-  private withGaitNames(walks: Walk[]): AskedWalk[] {
+  private withGaitNames(walks: Walk[]): RequestedWalk[] {
     const { gaits } = this.session.description;
     return walks.map(({ gait, during }) => ({ gait: gaits.find(({ command }) => command === gait)?.name ?? gait, during }));
   }
@@ -320,7 +320,7 @@ export class MeasureView {
   }
 
   /** Measures walks in the film. Shows the results, the given problems and the reasons why walks are not measured. */
-  private async measureWalks(walks: AskedWalk[], speed = this.values.speed ?? 100, problems: string[] = []): Promise<void> {
+  private async measureWalks(walks: RequestedWalk[], speed = this.values.speed ?? 100, problems: string[] = []): Promise<void> {
     this.task = 'compute';
     this.setMessage('Measuring…');
     this.updateControls();
@@ -329,7 +329,7 @@ export class MeasureView {
     try {
       const results = await filmHelper.call((film) => film.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
       this.resultsView.show(results.gaits);
-      problems.push(...results.troubles);
+      problems.push(...results.problems);
     } catch (error) {
       this.resultsView.show([]);
       problems.push(messageOf(error));

@@ -1,7 +1,7 @@
 // The user's own robots: when a link or another robot is opened, the changed robot is put aside and never lost.
 import { browserStorage, type SavedChanges } from '../browser-storage';
 import type { Session } from '../session';
-import type { Troubles } from './troubles';
+import type { ProblemList } from './problems';
 
 /** Returns the name of the robot in a robot.toml. */
 const nameIn = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
@@ -10,7 +10,7 @@ export class OwnRobot {
   /** `loadFile` loads a robot by its file name; `listNames` shows the names of the robots that are put aside. */
   constructor(
     private readonly session: Session,
-    private readonly troubles: Troubles,
+    private readonly problems: ProblemList,
     private readonly loadFile: (file: string) => Promise<void>,
     private readonly listNames: (names: string[]) => void,
   ) {
@@ -21,14 +21,14 @@ export class OwnRobot {
   putAside(previous: SavedChanges | null): void {
     if (!previous || previous.toml === previous.original || previous.toml === this.session.toml) return;
     this.storeAside([previous, ...browserStorage.getPutAside().filter(({ toml }) => toml !== previous.toml)]);
-    this.troubles.setMessage('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
+    this.problems.setMessage('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
   }
 
   /** Restores the robot with this index among those that were put aside, and puts the current robot aside. */
   async restore(index = 0): Promise<void> {
     const robotsAside = browserStorage.getPutAside();
     const ownRobot = robotsAside[index];
-    this.troubles.setMessage('own', null);
+    this.problems.setMessage('own', null);
     if (!ownRobot) return;
     const previous = browserStorage.getChanges();
     await this.loadFile(ownRobot.file);

@@ -4,7 +4,7 @@ import type { RobotView } from '../parts/robot-view';
 import type { PartsArchive, Clash, Model, Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { element, showMessage } from './canvas';
 import { saveFile } from './download';
 import { make } from './make';
@@ -18,10 +18,10 @@ const plainText = (markdown: string) => markdown.replaceAll('**', '').replaceAll
 
 export class PartsView {
   private readonly panel = element<HTMLDetailsElement>('parts');
-  private readonly view = element('solids');
-  private readonly button3d = element<HTMLButtonElement>('solid');
-  private readonly canvas = element<HTMLCanvasElement>('space');
-  private readonly explosionSlider = element<HTMLInputElement>('apart');
+  private readonly view = element('view-3d');
+  private readonly button3d = element<HTMLButtonElement>('button-3d');
+  private readonly canvas = element<HTMLCanvasElement>('canvas-3d');
+  private readonly explosionSlider = element<HTMLInputElement>('explosion');
   private readonly partList = element<HTMLSelectElement>('part');
   /** The buttons that make files: `all` makes every file, `changed` only those that the edited lengths change. */
   private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
@@ -121,7 +121,7 @@ export class PartsView {
       return new RobotViewClass(this.canvas, (body) => this.pickBody(body));
     } catch {
       this.canvas.hidden = true;
-      this.setMessage('space-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in 3D. You can still make the files.');
+      this.setMessage('canvas-3d-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in 3D. You can still make the files.');
       return null;
     }
   }
@@ -147,7 +147,7 @@ export class PartsView {
     const shownStep = step === null ? undefined : this.model.steps[step - 1];
     const count = this.model.steps.length;
     this.setMessage('step-title', shownStep ? `${step} of ${count}: ${shownStep.title}` : 'The whole robot');
-    this.setMessage('step-words', shownStep ? plainText(shownStep.words) : '');
+    this.setMessage('step-words', shownStep ? plainText(shownStep.instructions) : '');
     element<HTMLButtonElement>('step-back').disabled = step === 1;
     element<HTMLButtonElement>('step-on').disabled = step === count;
     element<HTMLButtonElement>('step-all').disabled = step === null;
@@ -182,7 +182,7 @@ export class PartsView {
   }
 
   private updateRobotView(): void {
-    element('apart-out').textContent = `${this.explosionSlider.value} %`;
+    element('explosion-out').textContent = `${this.explosionSlider.value} %`;
     const { step, pickedBody, clash, model } = this;
     const names = clash ? [clash.first, clash.second] : [];
     const clashingBodies = names.map((name) => model?.bodies.findIndex((body) => body.name === name) ?? -1);

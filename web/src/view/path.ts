@@ -1,5 +1,5 @@
 // The panel in which the user draws a gesture: a closed line that the point of the head or of the tail follows.
-import type { DrawnGait, End, ReachArea } from '../robot';
+import type { DrawnGait, End, Workspace } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { setAttributes, makeSvg } from './make';
@@ -53,7 +53,7 @@ export class PathView {
   /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
   /** The workspace of the end's point; null until the panel is opened, or if there is none. */
-  private workspace: ReachArea | null = null;
+  private workspace: Workspace | null = null;
 
   constructor(
     private readonly session: Session,
@@ -80,7 +80,7 @@ export class PathView {
 
   /** Shows the plane of the chosen end, head or tail, with the current line if `keepsLine`, else the chosen shape. */
   private showPlane(keepsLine = false): void {
-    this.workspace = this.session.robot.reachArea(this.gesture.end === 'head' ? 0 : 1);
+    this.workspace = this.session.robot.workspace(this.gesture.end === 'head' ? 0 : 1);
     if (!this.workspace) return;
     this.drawBackground(this.workspace);
     if (keepsLine) return this.changeGesture({});
@@ -109,9 +109,9 @@ export class PathView {
   }
 
   /** Draws the background: the workspace, the base and the neutral point. */
-  private drawBackground({ from, step, columns, allowed, neutral, shafts }: ReachArea): void {
+  private drawBackground({ first_point: [firstX, firstY], spacing, columns, allowed, neutral, shafts }: Workspace): void {
     const rows = allowed.length / columns;
-    const corner = (column: number, row: number): Point => [from[0] + (column - 0.5) * step, from[1] + (row - 0.5) * step];
+    const corner = (column: number, row: number): Point => [firstX + (column - 0.5) * spacing, firstY + (row - 0.5) * spacing];
     const cells: string[] = [];
     for (let row = 0; row < rows; row++) {
       for (let column = 0; column < columns; column++) {
@@ -126,8 +126,8 @@ export class PathView {
     this.baseLine.setAttribute('d', this.pathText(shafts, ''));
     const [x, y] = this.toPicture(neutral);
     setAttributes(this.neutralDot, { cx: x, cy: y });
-    const farY = from[1] + rows * step;
-    const [left, width] = [Math.min(from[0], shafts[0][0]) - MARGIN_MM, Math.max(columns * step, shafts[1][0] - shafts[0][0]) + 2 * MARGIN_MM];
+    const farY = firstY + rows * spacing;
+    const [left, width] = [Math.min(firstX, shafts[0][0]) - MARGIN_MM, Math.max(columns * spacing, shafts[1][0] - shafts[0][0]) + 2 * MARGIN_MM];
     const height = farY + 2 * MARGIN_MM;
     this.plane.setAttribute('viewBox', `${left} ${this.gesture.end === 'head' ? -farY - MARGIN_MM : -MARGIN_MM} ${width} ${height}`);
   }

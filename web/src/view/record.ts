@@ -4,7 +4,7 @@ import { restartWithGait } from '../gaits/try-gait';
 import { MAX_SECONDS, Recording } from '../recording';
 import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { WORDS } from '../words';
 import { element, setText } from './canvas';
 import { saveFile } from './download';

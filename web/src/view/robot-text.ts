@@ -3,7 +3,7 @@ import { addressParts } from '../address';
 import { linkTo, unpack } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';
 import type { Writer } from './writer';
@@ -92,7 +92,7 @@ export class RobotText {
       return toml === this.session.toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.textBox);
-      this.showRefusal({ refused: messageOf(error), meaning: null, line: null, key: '' });
+      this.showRefusal({ refused: messageOf(error), consequence: null, line: null, key: '' });
       return false;
     }
   }
@@ -101,7 +101,7 @@ export class RobotText {
     reveal(this.textBox);
     // A binary file must not be shown in the box.
     const toml = file.size > 1_000_000 ? '' : await file.text();
-    if (toml === '' || toml.includes('\0')) return this.showRefusal({ refused: `${file.name} is not a robot.toml.`, meaning: null, line: null, key: '' });
+    if (toml === '' || toml.includes('\0')) return this.showRefusal({ refused: `${file.name} is not a robot.toml.`, consequence: null, line: null, key: '' });
     await this.loadAndShow(toml);
   }
 

@@ -6,7 +6,7 @@ import type { Link } from '../link/link';
 import { parseCalibration } from '../robot';
 import type { Session } from '../session';
 import { BoardGuide } from '../setup/guide';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { GAITS, NOTHING_SAVED_LINE } from '../words';
 import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';

@@ -1,7 +1,7 @@
 // The view of the trial of an edited gait in a simulation: its figures, the nearest valid values if the gait is
 // refused, and the buttons that use the gait.
 import { applyGait, tryGait } from '../gaits/try-gait';
-import { type Alternative, isRefused, type EditedGait, type NoTrial, type OnFloor, type Trial } from '../robot';
+import { type Alternative, isRefused, type EditedGait, type OnFloor, type RefusedTrial, type Trial } from '../robot';
 import { createRobotQuestion } from '../robot-helper';
 import type { Session } from '../session';
 import { element, setText } from './canvas';
@@ -42,7 +42,7 @@ const OFFER_LABELS: Record<Alternative, (value: number) => string> = {
 };
 
 export class TrialView {
-  private readonly trialQuestion = createRobotQuestion<OnFloor & { gait: EditedGait }, Trial | NoTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
+  private readonly trialQuestion = createRobotQuestion<OnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
   /** The last valid trial; null if the gait was refused. */
   private trial: Trial | null = null;
 
@@ -71,7 +71,7 @@ export class TrialView {
     return element<E>(`${this.editor.prefix}-${name}`);
   }
 
-  private handleAnswer(trial: Trial | NoTrial | null): void {
+  private handleAnswer(trial: Trial | RefusedTrial | null): void {
     const refusal = trial && isRefused(trial) ? trial : null;
     const validTrial = trial && !isRefused(trial) ? trial : null;
     this.trial = validTrial;
@@ -83,7 +83,7 @@ export class TrialView {
     this.element('no').hidden = refusal === null;
     show('refusal', refusal?.refused ?? '');
     this.element('instead').replaceChildren(
-      ...(refusal?.instead ?? []).map(({ what, value }) => button(OFFER_LABELS[what](value), () => this.editor.change(what, value))),
+      ...(refusal?.alternatives ?? []).map(({ what, value }) => button(OFFER_LABELS[what](value), () => this.editor.change(what, value))),
     );
     this.setMessage('');
   }

@@ -22,13 +22,13 @@ export function formatLengths(edits: Edits, lengths: Length[]): string {
  * Returns a sentence with the reason why lengths are refused; `lengthsText` names these lengths, and `lengths` are
  * those of the current robot.
  */
-export function describeRefusal(lengthsText: string, edits: Edits, { refused, meaning, key }: Refused, lengths: Length[]): string {
+export function describeRefusal(lengthsText: string, edits: Edits, { refused, consequence, key }: Refused, lengths: Length[]): string {
   const lengthByKey = new Map(lengths.map((length) => [length.key, length]));
   const changes = edits.map(([editedKey, value]) => value - (lengthByKey.get(editedKey)?.value ?? value));
   const [more, less] = edits.every(([editedKey]) => lengthByKey.get(editedKey)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
   const judgement = changes.every((change) => change >= 0) ? `too ${more}` : changes.every((change) => change <= 0) ? `too ${less}` : 'not possible';
-  // A refusal without a meaning has the key as the subject of its message.
-  const reason = meaning ?? refused.slice(Math.max(0, refused.indexOf(key))).replace(key, lengthByKey.get(key)?.label ?? key);
+  // A refusal without a consequence has the key as the subject of its message.
+  const reason = consequence ?? refused.slice(Math.max(0, refused.indexOf(key))).replace(key, lengthByKey.get(key)?.label ?? key);
   return `${lengthsText} is ${judgement}: ${reason}.`;
 }
 

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals-core';
 
 import type { Progress, Session } from '../session';
-import { messageOf } from '../trouble';
+import { messageOf } from '../problem';
 import { setText } from './canvas';
 
 /** The elements that show the progress and the result. */

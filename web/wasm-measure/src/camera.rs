@@ -33,7 +33,7 @@ pub struct TagEntry {
 
 /// A request to measure gaits in the film.
 #[derive(Debug, Clone, PartialEq, Deserialize, Tsify)]
-pub struct Asked {
+pub struct MeasureRequest {
     /// The text of the robot.toml.
     pub toml: String,
     /// The pace, percent of a gait's own pace.
@@ -44,12 +44,12 @@ pub struct Asked {
     pub ruler: f64,
     /// The walks to measure. If empty, the film is split where the robot rests, and each walk is assigned the gait
     /// that it matches.
-    pub walks: Vec<AskedWalk>,
+    pub walks: Vec<RequestedWalk>,
 }
 
 /// A gait that the robot walked in the film.
 #[derive(Debug, Clone, PartialEq, Deserialize, Tsify)]
-pub struct AskedWalk {
+pub struct RequestedWalk {
     /// The gait's name.
     pub gait: String,
     /// Start and end of the walk on the film's clock, s; `None` for the whole film.
@@ -63,7 +63,7 @@ pub struct Results {
     #[tsify(type = "Report[]")]
     pub gaits: serde_json::Value,
     /// For each walk that cannot be measured, a sentence with its gait and the reason.
-    pub troubles: Vec<String>,
+    pub problems: Vec<String>,
 }
 
 /// A film that is being taken.
@@ -107,9 +107,9 @@ impl Camera {
     /// # Errors
     /// Fails if the robot.toml is invalid, the robot has no such gait, the film does not show what is needed, or a
     /// walk without a given gait does not clearly resemble one.
-    pub fn measure(&mut self, request: &Asked) -> Result<Results, Refused> {
+    pub fn measure(&mut self, request: &MeasureRequest) -> Result<Results, Refused> {
         let robot = Robot::parse(&request.toml).map_err(Refused::of)?;
-        let find_gait = |walk: &AskedWalk| {
+        let find_gait = |walk: &RequestedWalk| {
             let gait = robot.gait(&walk.gait).filter(|gait| gait.has_movement());
             gait.ok_or_else(|| Refused::of(format!("no gait `{}` moves this robot", walk.gait)))
         };
@@ -132,22 +132,16 @@ impl Camera {
         };
         let (_, film) = self.cached_analysis.insert((setup, film));
         let films = std::slice::from_ref(&*film);
-        let mut troubles = Vec::new();
+        let mut problems = Vec::new();
         let walks = match request.walks.is_empty() {
             true => gaits.measure_walks(films).map_err(Refused::of)?,
             false => {
-                let measured_walks =
-                    request
-                        .walks
-                        .iter()
-                        .enumerate()
-                        .filter_map(|(gait_index, asked_walk)| {
-                            let walk = gaits.measure_walk(gait_index, &films[0], asked_walk.during);
-                            walk.map_err(|reason| {
-                                troubles.push(format!("{}: {reason}", asked_walk.gait))
-                            })
-                            .ok()
-                        });
+                let measured_walks = request.walks.iter().enumerate().filter_map(|(i, walk)| {
+                    let measured_walk = gaits.measure_walk(i, &films[0], walk.during);
+                    let measured_walk = measured_walk
+                        .map_err(|reason| problems.push(format!("{}: {reason}", walk.gait)));
+                    measured_walk.ok()
+                });
                 measured_walks.collect()
             }
         };
@@ -155,7 +149,7 @@ impl Camera {
         let report = report.with_ranges(&robot).with_mujoco(&request.toml);
         Ok(Results {
             gaits: serde_json::to_value(&report.gaits).map_err(Refused::of)?,
-            troubles,
+            problems,
         })
     }
 }

@@ -13,7 +13,7 @@ const TYPES: &str = "
 /** A point of a picture, px. */
 export type Pixel = [number, number];
 /** A component of a cycle's movement: mm or deg. */
-export interface Part {
+export interface Component {
   mean: number;
   /** Standard deviation of a single cycle. */
   sd: number;
@@ -30,9 +30,9 @@ export interface Report {
   /** The pace, percent of the gait's own pace. */
   speed: number;
   cycles: number;
-  forward: Part;
-  left: Part;
-  turn: Part;
+  forward: Component;
+  left: Component;
+  turn: Component;
   /** The movement per cycle that MuJoCo computes with ideal servos: mm forward, mm to the left, deg counter-clockwise; known only for some robots. */
   mujoco?: [number, number, number];
   range?: Range;
@@ -79,8 +79,8 @@ impl PageCamera {
     ///
     /// # Errors
     /// Fails if the picture is incomplete, or if it is to be kept but does not belong to the film or shows a tag twice.
-    #[wasm_bindgen(unchecked_return_type = "TagEntry[]")]
-    pub fn look(
+    #[wasm_bindgen(js_name = findTags, unchecked_return_type = "TagEntry[]")]
+    pub fn find_tags(
         &mut self,
         width: usize,
         height: usize,
@@ -106,7 +106,7 @@ impl PageCamera {
     #[wasm_bindgen(unchecked_return_type = "Results")]
     pub fn measure(
         &mut self,
-        #[wasm_bindgen(unchecked_param_type = "Asked")] request: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "MeasureRequest")] request: &JsValue,
     ) -> Result<JsValue, JsError> {
         let json = JSON::stringify(request)
             .map_err(|_| JsError::new("the request cannot be written as JSON"))?;

@@ -10,5 +10,5 @@
 mod camera;
 mod javascript;
 
-pub use camera::{Asked, AskedWalk, Camera, Refused, Results, TagEntry};
+pub use camera::{Camera, MeasureRequest, Refused, RequestedWalk, Results, TagEntry};
 pub use javascript::PageCamera;

@@ -10,7 +10,7 @@ use crate::solids::Triangles;
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
 /** Two parts that overlap or come too close. */
-export interface Meeting {
+export interface Clash {
   first: string;
   second: string;
   /** Their distance, mm; negative if they overlap. */

@@ -16,15 +16,15 @@ pub struct Refused {
     /// The reason, as a message.
     pub refused: String,
     /// The two parts that overlap or come too close; `None` if there is another reason.
-    #[tsify(type = "Meeting | null")]
-    pub meeting: Option<CollidingPair>,
+    #[tsify(type = "Clash | null")]
+    pub clash: Option<CollidingPair>,
 }
 
 impl Refused {
     fn of(error: impl ToString) -> Self {
         Self {
             refused: error.to_string(),
-            meeting: None,
+            clash: None,
         }
     }
 }
@@ -32,7 +32,7 @@ impl Refused {
 impl From<BuildProblem> for Refused {
     fn from(problem: BuildProblem) -> Self {
         Self {
-            meeting: problem.colliding_pair(),
+            clash: problem.colliding_pair(),
             ..Self::of(problem)
         }
     }
@@ -78,7 +78,7 @@ pub struct StepEntry {
     /// The headline.
     pub title: &'static str,
     /// The instructions, as Markdown.
-    pub words: String,
+    pub instructions: String,
 }
 
 /// The description of the complete model, except the triangles.
@@ -164,7 +164,7 @@ impl Model {
         };
         let step_entry = |step: &Step| StepEntry {
             title: step.title,
-            words: step.instructions.clone(),
+            instructions: step.instructions.clone(),
         };
         ModelEntry {
             bodies,
@@ -266,7 +266,7 @@ impl Model {
         let proof = self.assembly.prove(progress);
         proof.judge().map_err(BuildProblem::from)?;
         Ok(Proved {
-            least: proof.nearest_separate_pair().map(|pair| pair.proved),
+            least: proof.nearest_separate_pair().map(|pair| pair.lower_bound),
         })
     }
 }

@@ -11,7 +11,7 @@ use lizard_robot::{Harmonic, Path, Robot};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
-use crate::reach_area::neutral_point;
+use crate::workspace::neutral_point;
 
 /// Number of points at which a line is sampled.
 const SAMPLE_COUNT: usize = 256;
@@ -246,8 +246,11 @@ mod tests {
                 .expect("the line has a length")
         };
         let refusal = try_gait(&drawn_gait).expect_err("the circle is too large");
-        let [size] = refusal.instead.as_slice() else {
-            panic!("only a size is offered, no period: {:?}", refusal.instead);
+        let [size] = refusal.alternatives.as_slice() else {
+            panic!(
+                "only a size is offered, no period: {:?}",
+                refusal.alternatives
+            );
         };
         assert_eq!(size.what, "size");
         let with_size = |size: f64| DrawnGait {
@@ -266,9 +269,9 @@ mod tests {
         };
         let refusal = try_gait(&fast_gait).expect_err("the gait is too fast");
         let offer = refusal
-            .instead
+            .alternatives
             .iter()
-            .find(|instead| instead.what == "period");
+            .find(|alternative| alternative.what == "period");
         let slow_period = offer.expect("a longer period is offered").value;
         let with_period = |period: f64| DrawnGait {
             period,

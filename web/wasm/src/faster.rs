@@ -83,7 +83,7 @@ impl FasterSearch {
     pub fn begin(twin: &Twin, task: &SearchTask) -> Result<Self, Refused> {
         let refusal_of = |key: &str, reason: String| Refused {
             refused: reason,
-            meaning: None,
+            consequence: None,
             line: None,
             key: key.to_string(),
         };

@@ -171,7 +171,7 @@ impl Robot {
 
     /// Makes the map of singularities of the head (0) or the tail (1); null without a robot.
     #[must_use]
-    #[wasm_bindgen(unchecked_return_type = "Map | null")]
+    #[wasm_bindgen(unchecked_return_type = "SingularityMap | null")]
     pub fn map(&self, end: usize) -> JsValue {
         to_js(self.0.map(end))
     }
@@ -194,7 +194,7 @@ impl Robot {
 
     /// Tries a gait on the page's robot; takes tenths of a second. Null without a robot, or for a drawn line without
     /// length.
-    #[wasm_bindgen(unchecked_return_type = "Trial | NoTrial | null")]
+    #[wasm_bindgen(unchecked_return_type = "Trial | RefusedTrial | null")]
     pub fn trial(
         &self,
         #[wasm_bindgen(unchecked_param_type = "EditedGait")] edited_gait: &JsValue,
@@ -247,11 +247,11 @@ impl Robot {
         Ok(to_js(self.0.drawn_path(&from_js(drawn_gait)?)))
     }
 
-    /// Returns the area that the end point of the head (0) or the tail (1) can reach; null without a robot.
+    /// Returns the workspace of the end point of the head (0) or the tail (1); null without a robot.
     #[must_use]
-    #[wasm_bindgen(js_name = reachArea, unchecked_return_type = "ReachArea | null")]
-    pub fn reach_area(&self, end: usize) -> JsValue {
-        to_js(self.0.reach_area(end))
+    #[wasm_bindgen(unchecked_return_type = "Workspace | null")]
+    pub fn workspace(&self, end: usize) -> JsValue {
+        to_js(self.0.workspace(end))
     }
 
     /// Starts the firmware's core with this robot.

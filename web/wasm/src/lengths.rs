@@ -192,9 +192,9 @@ mod tests {
     fn the_refusal_of_a_length_offers_the_longest_accepted_half_millimetre() {
         let slider_lengths = |mm| ["links.l12", "links.l17"].map(|key| (key.to_string(), mm));
         let result = Lengths::of(PAPER_TOML, &slider_lengths(80.0), true);
-        let meaning = result.refusal.expect("the lengths are refused").meaning;
+        let consequence = result.refusal.expect("the lengths are refused").consequence;
         assert_eq!(
-            meaning.as_deref(),
+            consequence.as_deref(),
             Some("in the neutral pose the left slider would run into its end")
         );
         assert_eq!(result.without, None, "no gait forbids the lengths");
@@ -241,9 +241,9 @@ mod tests {
     fn a_length_that_only_one_gait_forbids_is_offered_without_that_gait() {
         let coupler_lengths = ["links.l2", "links.l3"].map(|key| (key.to_string(), 60.0));
         let result = Lengths::of(PAPER_TOML, &coupler_lengths, true);
-        let meaning = result.refusal.expect("the lengths are refused").meaning;
-        let expected_meaning = "in \"look\" the left front leg would lock";
-        assert_eq!(meaning.as_deref(), Some(expected_meaning));
+        let consequence = result.refusal.expect("the lengths are refused").consequence;
+        let expected_consequence = "in \"look\" the left front leg would lock";
+        assert_eq!(consequence.as_deref(), Some(expected_consequence));
         let WithoutGait { gait, text } = result.without.expect("only `look` forbids the lengths");
         assert_eq!(gait, "look");
         let robot = Robot::parse(&text).expect("the robot without the gait is valid");

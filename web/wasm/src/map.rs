@@ -35,14 +35,14 @@ pub struct Curve {
 
 /// The map of singularities of an end.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct Map {
+pub struct SingularityMap {
     /// Name of the end: head or tail.
     pub end: String,
     /// Smallest angle of either crank, deg.
-    pub from: f64,
+    pub min_angle: f64,
     /// Greatest angle of either crank, deg.
-    pub to: f64,
-    /// Number of columns, and of rows; the first column and the first row are at `from`.
+    pub max_angle: f64,
+    /// Number of columns, and of rows; the first column and the first row are at `min_angle`.
     pub size: usize,
     /// Smallest margin at each point, in hundredths, column by column: for each left crank angle, all
     /// right ones. `None` if the loop does not close.
@@ -53,7 +53,7 @@ pub struct Map {
     pub curves: Vec<Curve>,
 }
 
-impl Map {
+impl SingularityMap {
     /// Computes the map of an end.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
@@ -73,8 +73,8 @@ impl Map {
             .unzip();
         Self {
             end: end.to_string(),
-            from: MIN_ANGLE_DEG,
-            to: MAX_ANGLE_DEG,
+            min_angle: MIN_ANGLE_DEG,
+            max_angle: MAX_ANGLE_DEG,
             size,
             margins,
             safe,
@@ -151,9 +151,10 @@ mod tests {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         for end in End::ALL {
-            let map = Map::of(&robot, end);
+            let map = SingularityMap::of(&robot, end);
             let index_at = |MapPoint(left, right): MapPoint| {
-                let grid_index = |theta: f64| ((theta - map.from) / GRID_STEP_DEG).round() as usize;
+                let grid_index =
+                    |theta: f64| ((theta - map.min_angle) / GRID_STEP_DEG).round() as usize;
                 grid_index(left) * map.size + grid_index(right)
             };
             let neutral_point = map_point(end, &robot.neutral_pose());

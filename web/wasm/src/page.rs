@@ -16,14 +16,14 @@ use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
 use crate::faster::{FasterSearch, SearchExtent, SearchTask};
 use crate::floor::{Floor, Legs};
-use crate::map::Map;
+use crate::map::SingularityMap;
 use crate::place::Place;
 use crate::prediction::GaitPrediction;
-use crate::reach_area::ReachArea;
 use crate::refused::Refused;
 use crate::round::RoundPath;
 use crate::scene::Scene;
-use crate::trial::{EditedGait, NoTrial, Trial};
+use crate::trial::{EditedGait, RefusedTrial, Trial};
+use crate::workspace::Workspace;
 
 /// CPU cycles in a microsecond.
 const CYCLES_PER_US: f64 = 16.0;
@@ -238,7 +238,7 @@ impl Page {
     ///
     /// # Errors
     /// Returns the first limit that the gait violates, with valid alternatives.
-    pub fn try_gait(&self, edited_gait: &EditedGait) -> Option<Result<Trial, NoTrial>> {
+    pub fn try_gait(&self, edited_gait: &EditedGait) -> Option<Result<Trial, RefusedTrial>> {
         edited_gait.try_on(self.twin.as_ref()?)
     }
 
@@ -283,14 +283,14 @@ impl Page {
         drawn_gait.shown_points(self.robot()?)
     }
 
-    /// Returns the area that the end point of the head (0) or the tail (1) can reach; `None` without a robot.
-    pub fn reach_area(&self, end: usize) -> Option<ReachArea> {
-        Some(ReachArea::of(self.robot()?, *End::ALL.get(end)?))
+    /// Returns the workspace of the end point of the head (0) or the tail (1); `None` without a robot.
+    pub fn workspace(&self, end: usize) -> Option<Workspace> {
+        Some(Workspace::of(self.robot()?, *End::ALL.get(end)?))
     }
 
     /// Makes the map of singularities of the head (0) or the tail (1); `None` without a robot.
-    pub fn map(&self, end: usize) -> Option<Map> {
-        Some(Map::of(self.robot()?, *End::ALL.get(end)?))
+    pub fn map(&self, end: usize) -> Option<SingularityMap> {
+        Some(SingularityMap::of(self.robot()?, *End::ALL.get(end)?))
     }
 
     /// Starts the core as at power-on with this robot; the EEPROM keeps the contents of the previous run, unless the

@@ -11,7 +11,7 @@ pub struct Refused {
     /// The message for the user: what is wrong, and where.
     pub refused: String,
     /// The consequence for the robot, without keys and figures; `None` if the message names no consequence.
-    pub meaning: Option<String>,
+    pub consequence: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,
     /// Full name of the key, such as `links.l2`; empty if the refusal belongs to no key.
@@ -22,14 +22,14 @@ impl Refused {
     /// Converts the error of a gait; drops the line, since the user does not see the gait's text.
     pub(crate) fn of_gait(error: Error) -> Self {
         let Error {
-            meaning,
+            consequence,
             problem,
             key,
             ..
         } = error;
         Self {
-            refused: format!("{}: {problem}", meaning.as_ref().unwrap_or(&key)),
-            meaning,
+            refused: format!("{}: {problem}", consequence.as_ref().unwrap_or(&key)),
+            consequence,
             line: None,
             key,
         }
@@ -40,7 +40,7 @@ impl From<Error> for Refused {
     fn from(error: Error) -> Self {
         Self {
             refused: error.to_string(),
-            meaning: error.meaning,
+            consequence: error.consequence,
             line: error.line,
             key: error.key,
         }
@@ -51,7 +51,7 @@ impl From<NoSuchKey> for Refused {
     fn from(error: NoSuchKey) -> Self {
         Self {
             refused: error.to_string(),
-            meaning: None,
+            consequence: None,
             line: None,
             key: error.0,
         }

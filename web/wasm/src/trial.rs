@@ -33,7 +33,7 @@ pub enum EditedGait {
 pub struct Trial {
     /// Predicted displacement per cycle.
     #[serde(flatten)]
-    pub outlook: GaitPrediction,
+    pub prediction: GaitPrediction,
     /// The gait's table for robot.toml.
     pub table: String,
     /// Name of the margin that comes nearest to its limit.
@@ -62,12 +62,12 @@ pub struct Alternative {
 
 /// The refusal of a gait, with valid alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct NoTrial {
+pub struct RefusedTrial {
     /// The refusal.
     #[serde(flatten)]
     pub refused: Refused,
     /// The nearest valid values; each of them makes the gait valid on its own.
-    pub instead: Vec<Alternative>,
+    pub alternatives: Vec<Alternative>,
 }
 
 impl EditedGait {
@@ -92,11 +92,11 @@ impl EditedGait {
     /// # Errors
     /// Returns the first limit that the gait violates, with valid alternatives.
     #[must_use]
-    pub fn try_on(&self, twin: &Twin) -> Option<Result<Trial, NoTrial>> {
+    pub fn try_on(&self, twin: &Twin) -> Option<Result<Trial, RefusedTrial>> {
         let table = self.table(twin.robot())?;
-        Some(try_table(table, twin).map_err(|refused| NoTrial {
+        Some(try_table(table, twin).map_err(|refused| RefusedTrial {
             refused,
-            instead: self.find_alternatives(twin.robot()),
+            alternatives: self.find_alternatives(twin.robot()),
         }))
     }
 
@@ -164,7 +164,7 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
         .min_by(|a, b| (a.0.value - a.1).total_cmp(&(b.0.value - b.1)))
         .expect("there are three margins");
     Ok(Trial {
-        outlook: GaitPrediction::of(&trial_twin, gait),
+        prediction: GaitPrediction::of(&trial_twin, gait),
         table,
         margin: nearest_margin.check.name(),
         least: nearest_margin.value,

@@ -12,7 +12,7 @@ pub struct Error {
     /// Full name of the key, such as `servo.A1.pin`; empty if the mistake concerns the whole file.
     pub key: String,
     /// The consequence of the mistake for the robot, without keys and figures; `None` if `problem` states it.
-    pub meaning: Option<String>,
+    pub consequence: Option<String>,
     /// The message without file, line, key and consequence.
     pub problem: String,
     /// True if `problem` is a clause with its own subject; false if the key is its subject.
@@ -29,7 +29,7 @@ impl fmt::Display for Error {
             location += &format!(": {}", self.key);
         }
         // The consequence for the robot comes first, because the reader needs it before the location.
-        if let Some(consequence) = &self.meaning {
+        if let Some(consequence) = &self.consequence {
             return write!(f, "{consequence}: {} ({location})", self.problem);
         }
         let separator = if self.key.is_empty() || self.is_clause {
@@ -48,7 +48,7 @@ impl std::error::Error for Error {}
 pub(crate) struct UnlocatedError {
     /// Full name of the key; empty if the mistake concerns the whole file.
     pub key: String,
-    /// See [`Error::meaning`].
+    /// See [`Error::consequence`].
     consequence: Option<String>,
     /// See [`Error::problem`].
     problem: String,
@@ -101,7 +101,7 @@ impl UnlocatedError {
             file,
             line,
             key: self.key,
-            meaning: self.consequence,
+            consequence: self.consequence,
             problem: self.problem,
             is_clause: self.is_clause,
         }

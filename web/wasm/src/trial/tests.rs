@@ -11,7 +11,7 @@ fn bars_of(robot: &Robot, name: &str) -> Bars {
         .expect("the gait has bars")
 }
 
-fn try_bars(bars: &Bars, twin: &Twin) -> Result<Trial, NoTrial> {
+fn try_bars(bars: &Bars, twin: &Twin) -> Result<Trial, RefusedTrial> {
     let gait = EditedGait::Bars(bars.clone());
     gait.try_on(twin).expect("bars always have a table")
 }
@@ -29,7 +29,7 @@ fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
         let gait = robot.gait(name).expect("the robot has this gait");
         let trial = try_bars(&bars_of(&robot, name), &twin).expect("the gait is valid");
-        assert_eq!(trial.outlook, GaitPrediction::of(&twin, gait), "{name}");
+        assert_eq!(trial.prediction, GaitPrediction::of(&twin, gait), "{name}");
         assert_eq!(trial.speed, gait.audit().peak_speed.speed, "{name}");
     }
     for name in ["stand", "look"] {
@@ -49,7 +49,7 @@ fn a_reversed_gait_walks_the_same_distance_backwards() {
         .expect("the distance is determined");
     let trial = try_bars(&bars_of(&robot, "back"), &twin).expect("the gait is valid");
     let trial_mm = trial
-        .outlook
+        .prediction
         .movement
         .forward()
         .expect("the distance is determined");
@@ -63,7 +63,7 @@ fn a_reversed_gait_walks_the_same_distance_backwards() {
         let forward_trial = try_bars(&bars, &twin).expect("the gait is valid");
         let reversed_trial = try_bars(&bars.reversed(), &twin).expect("the gait is valid");
         let [forward_mm, reversed_mm] =
-            [forward_trial, reversed_trial].map(|trial| trial.outlook.movement.forward());
+            [forward_trial, reversed_trial].map(|trial| trial.prediction.movement.forward());
         let sum = forward_mm.expect("the distance is determined")
             + reversed_mm.expect("the distance is determined");
         assert!(
@@ -96,8 +96,8 @@ fn a_refusal_offers_the_nearest_valid_values() {
             "{:?}",
             refusal.refused
         );
-        assert!(!refusal.instead.is_empty(), "{:?}", refusal.refused);
-        for Alternative { what, value } in refusal.instead {
+        assert!(!refusal.alternatives.is_empty(), "{:?}", refusal.refused);
+        for Alternative { what, value } in refusal.alternatives {
             let with_value = |value: f64| match what {
                 "amplitude" => Bars {
                     amplitude: value,
@@ -172,5 +172,5 @@ fn an_invalid_name_is_refused_without_alternatives() {
         },
         &twin,
     );
-    assert_eq!(result.expect_err("the name is invalid").instead, []);
+    assert_eq!(result.expect_err("the name is invalid").alternatives, []);
 }

@@ -9,13 +9,13 @@ before(openBrowser);
 afterEach(closePages);
 after(closeBrowser);
 
-const troubleOf = (page) => page.locator('#trouble');
+const problemsOf = (page) => page.locator('#problems');
 
 test('the message about an unreadable robot file stays while the previous robot walks on', async () => {
   const page = await openStanding();
   await page.route('**/files/large.toml', (route) => route.fulfill({ status: 404 }));
   await page.locator('#robot').selectOption('large');
-  const message = troubleOf(page).getByText('files/large.toml is not there (404)');
+  const message = problemsOf(page).getByText('files/large.toml is not there (404)');
   await message.waitFor();
   assert.equal(await page.locator('#robot').inputValue(), 'robot', 'the list shows the robot in use');
   await sendLine(page, 'walk', 'ok walk');
@@ -27,7 +27,7 @@ test('the message about an unreadable robot file stays while the previous robot 
   await page.unroute('**/files/large.toml');
   await page.locator('#robot').selectOption('large');
   await page.waitForFunction(() => window.lizard.file === 'large');
-  assert.equal(await troubleOf(page).isVisible(), false, 'a readable robot file removes the message');
+  assert.equal(await problemsOf(page).isVisible(), false, 'a readable robot file removes the message');
   // The browser also reports the missing file, as expected.
   complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/404/.test(complaint)));
 });
@@ -36,13 +36,13 @@ test('if the first robot cannot be read, the page says so and accepts another ro
   const page = await openBlank();
   await page.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await page.goto(address());
-  await troubleOf(page).getByText('files/robot.toml is not there (404)').waitFor();
+  await problemsOf(page).getByText('files/robot.toml is not there (404)').waitFor();
   assert.equal(await text(page, '#where'), 'No robot could be read.');
   await page.locator('#robot').selectOption('paper');
   await page.waitForFunction(() => window.lizard?.file === 'paper');
   await advance(page, 2500);
   assert.match(await text(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
-  assert.equal(await troubleOf(page).isVisible(), false);
+  assert.equal(await problemsOf(page).isVisible(), false);
 });
 
 test('the message about a busy port stays until the user dismisses it', async () => {
@@ -53,14 +53,14 @@ test('the message about a busy port stays until the user dismisses it', async ()
     };
   });
   await page.locator('#connect').click();
-  const message = troubleOf(page).getByText('No board is connected: Failed to open serial port.');
+  const message = problemsOf(page).getByText('No board is connected: Failed to open serial port.');
   await message.waitFor();
   await unfold(page, '#power');
   await page.clock.runFor(8000);
   await page.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await message.isVisible());
   await page.getByRole('button', { name: 'Dismiss' }).click();
-  assert.equal(await troubleOf(page).isVisible(), false);
+  assert.equal(await problemsOf(page).isVisible(), false);
 });
 
 test('picking no port reports no problem', async () => {
@@ -74,15 +74,15 @@ test('picking no port reports no problem', async () => {
   await page.locator('#connect').click();
   await page.waitForFunction(() => window.isPickCancelled);
   await page.clock.runFor(500);
-  assert.equal(await troubleOf(page).isVisible(), false);
+  assert.equal(await problemsOf(page).isVisible(), false);
   assert.match(await text(page, '#where'), /simulated UNO/);
 });
 
 test('if ports are forbidden, the page says why, and the simulation continues', async () => {
   const page = await openForbidden('serial');
   await page.locator('#connect').click();
-  await troubleOf(page).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
-  assert.match(await troubleOf(page).innerText(), /^No board is connected: /);
+  await problemsOf(page).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
+  assert.match(await problemsOf(page).innerText(), /^No board is connected: /);
   assert.match(await text(page, '#where'), /simulated UNO/);
 });
 

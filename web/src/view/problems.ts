@@ -1,5 +1,5 @@
 // The list of problems, with one line for each cause. A line stays until its cause is gone or the user dismisses it.
-import type { Cause } from '../trouble';
+import type { Cause } from '../problem';
 import { element } from './canvas';
 import { button, make, paragraph } from './make';
 
@@ -9,8 +9,8 @@ export interface Remedy {
   action: () => void;
 }
 
-export class Troubles {
-  private readonly box = element('trouble');
+export class ProblemList {
+  private readonly box = element('problems');
   private readonly lines = new Map<Cause, HTMLElement>();
 
   /** Replaces the message for a cause; null removes it. */

@@ -15,14 +15,14 @@ const RIM_POINT_COUNT: i32 = 2;
 /// Largest distance between two points that count as the same, mm.
 const POINT_TOLERANCE_MM: f64 = 1e-6;
 
-/// The area that the end point of head or tail can reach, as a grid: mm in the end's own frame, whose origin is the
+/// The workspace of the end point of head or tail, as a grid: mm in the end's own frame, whose origin is the
 /// middle of the end's base and whose y axis points outward.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct ReachArea {
+pub struct Workspace {
     /// The first point of the first row.
-    pub from: [f64; 2],
+    pub first_point: [f64; 2],
     /// Distance between neighbouring points, mm.
-    pub step: f64,
+    pub spacing: f64,
     /// Number of points in a row.
     pub columns: usize,
     /// True at allowed points, row by row.
@@ -33,8 +33,8 @@ pub struct ReachArea {
     pub shafts: [[f64; 2]; 2],
 }
 
-impl ReachArea {
-    /// Computes the area that the end point of head or tail can reach.
+impl Workspace {
+    /// Computes the workspace of the end point of head or tail.
     #[must_use]
     pub fn of(robot: &Robot, end: End) -> Self {
         let five_bar = robot.lizard().end(end);
@@ -43,8 +43,9 @@ impl ReachArea {
             + five_bar
                 .left_coupler_length
                 .max(five_bar.right_coupler_length);
-        let step = 2.0 * reach / f64::from(STEPS_ACROSS);
-        let point_at = |column: i32, row: i32| [f64::from(column) * step, f64::from(row) * step];
+        let spacing = 2.0 * reach / f64::from(STEPS_ACROSS);
+        let point_at =
+            |column: i32, row: i32| [f64::from(column) * spacing, f64::from(row) * spacing];
         let half_steps = STEPS_ACROSS / 2;
         let row_of_plane = |row: i32| -> Vec<bool> {
             let columns = -half_steps..=half_steps;
@@ -82,8 +83,8 @@ impl ReachArea {
             .map(|(column, row)| is_allowed(column, row));
         let half_base = five_bar.base / 2.0;
         Self {
-            from: point_at(*columns.start(), *rows.start()),
-            step,
+            first_point: point_at(*columns.start(), *rows.start()),
+            spacing,
             columns: columns.clone().count(),
             allowed: allowed.collect(),
             neutral: neutral_point(robot, end),
@@ -124,19 +125,24 @@ mod tests {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         for end in End::ALL {
-            let area = ReachArea::of(&robot, end);
+            let workspace = Workspace::of(&robot, end);
             let is_allowed_at = |[x, y]: [f64; 2]| {
                 let [column, row] = [
-                    (x - area.from[0]) / area.step,
-                    (y - area.from[1]) / area.step,
+                    (x - workspace.first_point[0]) / workspace.spacing,
+                    (y - workspace.first_point[1]) / workspace.spacing,
                 ];
-                area.allowed[row.round() as usize * area.columns + column.round() as usize]
+                workspace.allowed
+                    [row.round() as usize * workspace.columns + column.round() as usize]
             };
-            assert!(is_allowed_at(area.neutral), "{end}");
-            assert_eq!(area.allowed.len() % area.columns, 0);
-            // The first row belongs to the rim of points that are not allowed, so that the area's edge is visible.
-            assert!(area.allowed[..area.columns].iter().all(|allowed| !allowed));
-            // The gesture `look` stays in the area: 10 mm to either side of 54 mm outward.
+            assert!(is_allowed_at(workspace.neutral), "{end}");
+            assert_eq!(workspace.allowed.len() % workspace.columns, 0);
+            // The first row belongs to the rim of points that are not allowed, so that the workspace's edge is visible.
+            assert!(
+                workspace.allowed[..workspace.columns]
+                    .iter()
+                    .all(|allowed| !allowed)
+            );
+            // The gesture `look` stays in the workspace: 10 mm to either side of 54 mm outward.
             for x in [-10.0, 0.0, 10.0] {
                 assert!(is_allowed_at([x, 54.0]), "{end} {x}");
             }
