@@ -10,11 +10,11 @@ use nalgebra::DMatrix;
 
 use crate::card::{self, Card};
 use crate::chi_square::percentile_99;
+use crate::error::IdentifyError;
 use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, PLAY_INDEX, TWIST_INDEX};
-use crate::outcome::{Goodness, Identified, KeyResult, MovementResult, Verdict};
+use crate::movement::MeasuredMovement;
+use crate::outcome::{GoodnessOfFit, Identified, KeyResult, MovementResult, Verdict};
 use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split};
-use crate::trouble::Trouble;
-use crate::way::MeasuredMovement;
 
 /// Indices in [`KEYS`] of the keys for which the model is least linear near the file's value.
 const NONLINEAR_KEYS: [usize; 3] = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX];
@@ -42,14 +42,14 @@ pub fn identify(
     robot: &Robot,
     movements: &[MeasuredMovement],
     run_all: RunAll,
-) -> Result<Identified, Trouble> {
+) -> Result<Identified, IdentifyError> {
     let mut movements = movements.to_vec();
     let mut gait_runs = Vec::new();
     for movement in &mut movements {
         let gait = robot.gait(&movement.gait);
-        let gait = gait.ok_or_else(|| Trouble::NoSuchGait(movement.gait.clone()))?;
+        let gait = gait.ok_or_else(|| IdentifyError::NoSuchGait(movement.gait.clone()))?;
         if !gait.has_movement() {
-            return Err(Trouble::MovesNoServo(movement.gait.clone()));
+            return Err(IdentifyError::MovesNoServo(movement.gait.clone()));
         }
         let values = movement.mean.iter().chain(&movement.error);
         let are_all_finite = values
@@ -59,7 +59,7 @@ pub fn identify(
             || movement.pace <= 0.0
             || movement.error.iter().any(|error| *error < 0.0)
         {
-            return Err(Trouble::InvalidValue(movement.gait.clone()));
+            return Err(IdentifyError::InvalidValue(movement.gait.clone()));
         }
         let prediction = robot.predict(gait);
         for (i, component) in [prediction.forward, prediction.left, prediction.turn]
@@ -92,10 +92,10 @@ pub(crate) fn solve(
     movements: &[MeasuredMovement],
     file_values: Values,
     predict: &dyn Fn(&Values) -> Vec<Travel>,
-) -> Result<Identified, Trouble> {
+) -> Result<Identified, IdentifyError> {
     let problem = Problem::new(movements, file_values, predict);
-    if problem.figure_count() == 0 {
-        return Err(Trouble::NothingDetermined);
+    if problem.value_count() == 0 {
+        return Err(IdentifyError::NothingDetermined);
     }
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let Fit {
@@ -112,7 +112,7 @@ pub(crate) fn solve(
     let errors = standard_errors(&problem, &full_fit).map(|error| error_factor * error);
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
     let card_only_solution = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
-    let card_only_fit = card_only_solution.ok_or(Trouble::NoFit)?;
+    let card_only_fit = card_only_solution.ok_or(IdentifyError::NoFit)?;
     let residuals = problem
         .residuals(&last_fit.unknowns)
         .into_iter()
@@ -144,10 +144,11 @@ pub(crate) fn solve(
     let card_errors: [f64; card::PARAMETER_COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
     Ok(Identified {
         keys: KEYS.iter().enumerate().map(key_result_of).collect(),
-        card: [split(&last_fit.unknowns).1, Card::from(card_errors)],
+        card: split(&last_fit.unknowns).1,
+        card_error: Card::from(card_errors),
         correlated_pairs: correlated_pairs(&full_fit.covariance),
-        goodness: Goodness {
-            figure_count: problem.figure_count(),
+        goodness: GoodnessOfFit {
+            value_count: problem.value_count(),
             chi_squares: [
                 card_only_fit.chi_square,
                 last_fit.chi_square,
@@ -157,7 +158,7 @@ pub(crate) fn solve(
             chi_square_limit,
             is_explained,
             error_factor,
-            largest_difference: largest_residual.ok_or(Trouble::NothingDetermined)?,
+            largest_residual: largest_residual.ok_or(IdentifyError::NothingDetermined)?,
         },
         movements: measured_and_predicted.map(result_of).collect(),
     })
@@ -180,7 +181,7 @@ struct Fit {
 /// on average, it is repeated from other starts. In each of them, one nonlinear key is one prior standard deviation
 /// above or below the file's value. The limit that 1 % of correct models exceed is not used here, because a local
 /// minimum may also be below this limit.
-fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
+fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let start = problem.start_unknowns();
     let other_starts = NONLINEAR_KEYS.iter().flat_map(|&key| {
@@ -216,7 +217,7 @@ fn fit_all(problem: &Problem) -> Result<Fit, Trouble> {
             break;
         }
     }
-    best_fit.ok_or(Trouble::NoFit)
+    best_fit.ok_or(IdentifyError::NoFit)
 }
 
 /// Standard errors of a fit of all unknowns.
@@ -249,7 +250,7 @@ fn standard_errors(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUN
 fn degrees_of_freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
     let shares = (0..UNKNOWN_COUNT)
         .map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
-    problem.figure_count() as f64 - shares.sum::<f64>()
+    problem.value_count() as f64 - shares.sum::<f64>()
 }
 
 /// Returns keys to the file's values until every free key differs from its file value by at least
@@ -259,8 +260,8 @@ fn choose_keys(
     problem: &Problem,
     full_fit: &Solution,
     errors: &[f64; UNKNOWN_COUNT],
-) -> Result<(Solution, [Verdict; KEY_COUNT]), Trouble> {
-    let mut verdicts = [Verdict::Moved; KEY_COUNT];
+) -> Result<(Solution, [Verdict; KEY_COUNT]), IdentifyError> {
+    let mut verdicts = [Verdict::Changed; KEY_COUNT];
     let mut guess = full_fit.unknowns;
     let mut covariance = full_fit.covariance.clone();
     let start = problem.start_unknowns();
@@ -279,10 +280,12 @@ fn choose_keys(
         let is_free = |i: &usize| {
             verdicts
                 .get(*i)
-                .is_none_or(|verdict| *verdict == Verdict::Moved)
+                .is_none_or(|verdict| *verdict == Verdict::Changed)
         };
         let free_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).filter(is_free).collect();
-        let last_fit = problem.fit(&free_unknowns, &guess).ok_or(Trouble::NoFit)?;
+        let last_fit = problem
+            .fit(&free_unknowns, &guess)
+            .ok_or(IdentifyError::NoFit)?;
         guess = last_fit.unknowns;
         if next_key_to_hold(&verdicts, &guess, &start, errors).is_none() {
             return Ok((last_fit, verdicts));
@@ -297,7 +300,7 @@ fn next_key_to_hold(
     start: &[f64; UNKNOWN_COUNT],
     errors: &[f64; UNKNOWN_COUNT],
 ) -> Option<(usize, Verdict)> {
-    let free_keys = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Moved);
+    let free_keys = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Changed);
     let distance_of = |i: usize| (unknowns[i] - start[i]).abs() / errors[i];
     let nearest_key = free_keys().min_by(|&a, &b| distance_of(a).total_cmp(&distance_of(b)))?;
     if distance_of(nearest_key) < MIN_DISTANCE_ERRORS {

@@ -9,8 +9,8 @@
 //! A key that the movements do not determine keeps its value. A key whose standard error stays above half of its prior
 //! standard deviation counts as undetermined ([`Verdict::Undetermined`]). A key that would change by less than two
 //! standard errors counts as correct ([`Verdict::Unchanged`]). If the model deviates from the movements by more than
-//! their errors, the errors of all keys grow in proportion ([`Goodness`]). [`Identified::updated_robot_toml`] writes
-//! the new robot.toml.
+//! their errors, the errors of all keys grow in proportion ([`GoodnessOfFit`]). [`Identified::updated_robot_toml`]
+//! writes the new robot.toml.
 //!
 //! The crate starts no thread, and reads, stores and prints nothing.
 //!
@@ -23,17 +23,17 @@
 
 mod card;
 mod chi_square;
+mod error;
 mod identify;
 mod key;
+mod movement;
 mod outcome;
 mod problem;
 mod text;
-mod trouble;
-mod way;
 
 pub use card::Card;
+pub use error::IdentifyError;
 pub use identify::{RunAll, identify};
 pub use key::{KEYS, Key};
-pub use outcome::{Goodness, Identified, KeyResult, MovementResult, Verdict};
-pub use trouble::Trouble;
-pub use way::{MeasuredMovement, PARTS};
+pub use movement::{COMPONENTS, MeasuredMovement};
+pub use outcome::{GoodnessOfFit, Identified, KeyResult, MovementResult, Verdict};

@@ -2,19 +2,21 @@
 
 use crate::card::Card;
 use crate::key::Key;
-use crate::way::MeasuredMovement;
+use crate::movement::MeasuredMovement;
 
 /// The identified keys and their agreement with the measurements.
 #[derive(Clone, Debug)]
 pub struct Identified {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<KeyResult>,
-    /// Estimated place of the card, then the standard errors of this place.
-    pub card: [Card; 2],
+    /// Estimated place of the card.
+    pub card: Card,
+    /// Standard errors of the place of the card.
+    pub card_error: Card,
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
     pub correlated_pairs: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
-    pub goodness: Goodness,
+    pub goodness: GoodnessOfFit,
     /// The measured movements and the predictions of the model.
     pub movements: Vec<MovementResult>,
 }
@@ -27,7 +29,7 @@ pub struct KeyResult {
     /// Value in the file.
     pub file_value: f64,
     /// Value with which the model fits the measurements best; the file's value unless the verdict is
-    /// [`Verdict::Moved`].
+    /// [`Verdict::Changed`].
     pub new_value: f64,
     /// Standard error of the value that the measurements determine.
     pub error: f64,
@@ -39,7 +41,7 @@ pub struct KeyResult {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// The measurements contradict the file by at least two standard errors.
-    Moved,
+    Changed,
     /// The file's value agrees with the measurements.
     Unchanged,
     /// The measurements do not determine the key: its standard error stays above half of its prior standard deviation.
@@ -50,9 +52,9 @@ pub enum Verdict {
 
 /// Agreement of the model with the measured movements.
 #[derive(Clone, Copy, Debug)]
-pub struct Goodness {
+pub struct GoodnessOfFit {
     /// Number of measured values.
-    pub figure_count: usize,
+    pub value_count: usize,
     /// Sums of the squared residuals, each residual in units of its standard error: with the file's values, with the
     /// new values, and with all keys free.
     pub chi_squares: [f64; 3],
@@ -69,7 +71,7 @@ pub struct Goodness {
     pub error_factor: f64,
     /// Index of the movement, index of the component, and value of the largest residual with the new values, in
     /// standard errors.
-    pub largest_difference: (usize, usize, f64),
+    pub largest_residual: (usize, usize, f64),
 }
 
 /// A measured movement and the predictions of the model.
@@ -86,9 +88,9 @@ pub struct MovementResult {
 
 impl Identified {
     /// The keys with a new value.
-    pub fn moved_keys(&self) -> impl Iterator<Item = &KeyResult> {
+    pub fn changed_keys(&self) -> impl Iterator<Item = &KeyResult> {
         let keys = self.keys.iter();
-        keys.filter(|result| result.verdict == Verdict::Moved)
+        keys.filter(|result| result.verdict == Verdict::Changed)
     }
 }
 

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::card::{self, Card};
 use crate::key::{KEY_COUNT, KEYS, PLAY_INDEX};
-use crate::way::MeasuredMovement;
+use crate::movement::MeasuredMovement;
 
 /// Values of the keys, in the order of [`KEYS`].
 pub(crate) type Values = [f64; KEY_COUNT];
@@ -83,7 +83,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Number of measured values with a finite error.
-    pub fn figure_count(&self) -> usize {
+    pub fn value_count(&self) -> usize {
         let errors = self.movements.iter().flat_map(|movement| movement.error);
         errors.filter(|error| error.is_finite()).count()
     }

@@ -2,8 +2,8 @@
 
 use lizard_robot::{Robot, edit};
 
+use crate::error::IdentifyError;
 use crate::outcome::{Identified, KeyResult};
-use crate::trouble::Trouble;
 
 impl Identified {
     /// Writes the keys with a new value into the text of robot.toml, each with a comment. All other bytes stay
@@ -11,16 +11,16 @@ impl Identified {
     ///
     /// # Errors
     /// Fails if the text does not contain a key, or if the robot with the new values is refused.
-    pub fn updated_robot_toml(&self, text: &str) -> Result<String, Trouble> {
+    pub fn updated_robot_toml(&self, text: &str) -> Result<String, IdentifyError> {
         let mut new_text = text.to_owned();
-        let mut names: Vec<&str> = self.moved_keys().map(|result| result.key.name).collect();
+        let mut names: Vec<&str> = self.changed_keys().map(|result| result.key.name).collect();
         names.dedup();
         for name in names {
             let key_results = self.keys.iter().filter(|result| result.key.name == name);
             new_text = write_key(&new_text, &key_results.collect::<Vec<_>>())
-                .map_err(|error| Trouble::TextNotWritable(error.to_string()))?;
+                .map_err(|error| IdentifyError::TextNotWritable(error.to_string()))?;
         }
-        Robot::parse(&new_text).map_err(|error| Trouble::RobotRefused(error.to_string()))?;
+        Robot::parse(&new_text).map_err(|error| IdentifyError::RobotRefused(error.to_string()))?;
         Ok(new_text)
     }
 }
@@ -45,7 +45,7 @@ fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::NoSuchK
 
 impl KeyResult {
     fn is_changed(&self) -> bool {
-        self.verdict == crate::Verdict::Moved
+        self.verdict == crate::Verdict::Changed
     }
 
     /// The value for the new file, rounded if it changed.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use lizard_identify::{MeasuredMovement, Trouble, identify};
+use lizard_identify::{IdentifyError, MeasuredMovement, identify};
 use lizard_robot::Robot;
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -82,13 +82,13 @@ pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     }
     files::check_replaceable(&args.output)?;
     let spinner = Spinner::new("simulating the gaits");
-    let failure_of = |error: Trouble| Failure::Input(error.to_string());
+    let failure_of = |error: IdentifyError| Failure::Input(error.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
         (0..count).into_par_iter().map(walk).collect()
     })
     .map_err(failure_of)?;
     drop(spinner);
-    let has_changes = identified.moved_keys().next().is_some();
+    let has_changes = identified.changed_keys().next().is_some();
     if has_changes {
         let new_text = identified
             .updated_robot_toml(&old_text)

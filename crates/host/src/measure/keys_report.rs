@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use lizard_identify::{Card, Goodness, Identified, KeyResult, MovementResult, PARTS, Verdict};
+use lizard_identify::{
+    COMPONENTS, Card, GoodnessOfFit, Identified, KeyResult, MovementResult, Verdict,
+};
 use serde::Serialize;
 
 /// The identified keys, with the field names of `--json`.
@@ -70,9 +72,11 @@ struct GaitLine {
 
 impl KeysReport {
     pub(super) fn new(identified: &Identified, written_path: Option<&Path>) -> Self {
-        let [card, card_error] = &identified.card;
+        let Identified {
+            card, card_error, ..
+        } = identified;
         let value_and_error = |value_of: fn(&Card) -> f64| [value_of(card), value_of(card_error)];
-        let Goodness {
+        let GoodnessOfFit {
             chi_squares: [chi_square_before, chi_square, chi_square_all_free],
             ..
         } = identified.goodness;
@@ -89,7 +93,7 @@ impl KeysReport {
             },
             alike: identified.correlated_pairs.iter().map(name_pair).collect(),
             fit: FitLine {
-                figures: identified.goodness.figure_count,
+                figures: identified.goodness.value_count,
                 chi_square_before,
                 chi_square,
                 chi_square_all_free,
@@ -112,7 +116,7 @@ impl KeyLine {
             after: result.new_value,
             error: result.error,
             verdict: match result.verdict {
-                Verdict::Moved => "moved",
+                Verdict::Changed => "moved",
                 Verdict::Unchanged => "right",
                 Verdict::Undetermined => "untold",
                 Verdict::Impossible(_) => "impossible",
@@ -146,7 +150,9 @@ pub(super) fn report_text(identified: &Identified, written_path: Option<&Path>) 
     for result in &identified.keys {
         text += &key_line(result);
     }
-    let [card, card_error] = &identified.card;
+    let Identified {
+        card, card_error, ..
+    } = identified;
     let _ = writeln!(
         text,
         "\nThe card on the deck lies {:+.1} +- {:.1} mm ahead of the middle, {:+.1} +- {:.1} mm to the left, and is turned by \
@@ -193,7 +199,7 @@ fn key_line(result: &KeyResult) -> String {
         unit => format!("{}, {unit}", key.full_name()),
     };
     let verdict = match result.verdict {
-        Verdict::Moved => "changed".to_owned(),
+        Verdict::Changed => "changed".to_owned(),
         Verdict::Unchanged => "right".to_owned(),
         Verdict::Undetermined => format!("these gaits do not tell it: {}", key.other_method),
         Verdict::Impossible(value) => {
@@ -203,7 +209,7 @@ fn key_line(result: &KeyResult) -> String {
     format!(
         "{name:<35}{:>10}{:>10}{:>9.digits$}  {verdict}\n",
         format!("{:?}", result.file_value),
-        if result.verdict == Verdict::Moved {
+        if result.verdict == Verdict::Changed {
             format!("{:.digits$}", result.new_value)
         } else {
             "-".to_owned()
@@ -214,19 +220,19 @@ fn key_line(result: &KeyResult) -> String {
 
 /// Formats the paragraph on the goodness of the fit.
 fn goodness_text(identified: &Identified) -> String {
-    let Goodness {
-        figure_count,
+    let GoodnessOfFit {
+        value_count,
         chi_squares: [chi_before, chi_after, chi_free],
         degrees_of_freedom: freedom,
         chi_square_limit: limit,
         is_explained,
         error_factor,
-        largest_difference: (movement_index, part_index, difference),
+        largest_residual: (movement_index, component_index, difference),
     } = identified.goodness;
     let mut text = format!(
-        "{figure_count} figures: chi-square {chi_before:.1} by robot.toml, {chi_after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
+        "{value_count} figures: chi-square {chi_before:.1} by robot.toml, {chi_after:.1} with the values above, for {freedom:.0} degrees of freedom.\n"
     );
-    let (name, _) = PARTS[part_index];
+    let (name, _) = COMPONENTS[component_index];
     let gait = &identified.movements[movement_index].measured.gait;
     let comparison = if difference > 0.0 { "more" } else { "less" };
     let worst_text = format!(
@@ -270,7 +276,7 @@ fn movement_lines(result: &MovementResult) -> String {
         pace => format!("{} at {:.0} %", movement.gait, 100.0 * pace),
     };
     let mut lines = String::new();
-    for (i, (part_name, unit)) in PARTS.iter().enumerate() {
+    for (i, (component_name, unit)) in COMPONENTS.iter().enumerate() {
         let name = if i == 0 { gait.as_str() } else { "" };
         let error = match movement.error[i].is_finite() {
             true => format!("{:.2}", movement.error[i]),
@@ -279,7 +285,7 @@ fn movement_lines(result: &MovementResult) -> String {
         let _ = writeln!(
             lines,
             "{name:<17}{:<11}{:>+9.2}{error:>7}{:>+9.2}{:>+9.2}",
-            format!("{part_name}, {unit}"),
+            format!("{component_name}, {unit}"),
             movement.mean[i],
             result.predicted_before[i],
             result.predicted_after[i]

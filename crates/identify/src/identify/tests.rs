@@ -102,10 +102,10 @@ fn changed_keys_are_within_two_standard_errors_in_95_percent_and_correct_keys_st
                 ));
             } else {
                 unchanged_count += 1.0;
-                false_change_count += f64::from(u8::from(key.verdict == Verdict::Moved));
+                false_change_count += f64::from(u8::from(key.verdict == Verdict::Changed));
             }
             let distance = (key.new_value - key.file_value).abs();
-            assert_eq!(key.verdict == Verdict::Moved, distance > 0.0);
+            assert_eq!(key.verdict == Verdict::Changed, distance > 0.0);
             assert!(distance == 0.0 || distance >= 2.0 * key.error);
         }
     }
@@ -174,7 +174,7 @@ fn a_key_without_influence_keeps_its_value_and_is_undetermined() {
     }
     let result = solve(&movements, file_values(), &model_without_key_5).expect("the fit converges");
     let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
-    (expected[0], expected[5]) = (Verdict::Moved, Verdict::Undetermined);
+    (expected[0], expected[5]) = (Verdict::Changed, Verdict::Undetermined);
     assert_eq!(verdicts_of(&result), expected);
     assert_eq!(result.keys[5].new_value, result.keys[5].file_value);
     assert!(
@@ -214,10 +214,10 @@ fn a_movement_that_no_key_explains_is_reported_and_widens_the_errors() {
     assert!(good_result.goodness.is_explained && good_result.goodness.error_factor == 1.0);
     movements[3].mean[0] += 4.0;
     let bad_result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
-    let Goodness {
+    let GoodnessOfFit {
         is_explained,
         error_factor,
-        largest_difference,
+        largest_residual,
         ..
     } = bad_result.goodness;
     assert!(
@@ -225,7 +225,7 @@ fn a_movement_that_no_key_explains_is_reported_and_widens_the_errors() {
         "{:?}",
         bad_result.goodness
     );
-    assert_eq!((largest_difference.0, largest_difference.1), (3, 0));
+    assert_eq!((largest_residual.0, largest_residual.1), (3, 0));
     for (bad_key, good_key) in bad_result.keys.iter().zip(&good_result.keys) {
         assert!(
             bad_key.error > 4.0 * good_key.error,

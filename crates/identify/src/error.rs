@@ -2,7 +2,7 @@
 
 /// A reason why the keys cannot be identified.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Trouble {
+pub enum IdentifyError {
     /// The robot has no such gait.
     #[error("robot.toml has no gait `{0}`; give the robot that was filmed")]
     NoSuchGait(String),

@@ -1,7 +1,7 @@
 //! The measured movement of a gait.
 
 /// Names and units of the components of a movement, in the order of every array of components.
-pub const PARTS: [(&str, &str); 3] = [("ahead", "mm"), ("left", "mm"), ("turn", "deg")];
+pub const COMPONENTS: [(&str, &str); 3] = [("ahead", "mm"), ("left", "mm"), ("turn", "deg")];
 
 /// Movement of the robot in one cycle of a gait, as measured.
 #[derive(Clone, Debug, PartialEq)]
