@@ -64,7 +64,7 @@ class World {
       wait: (seconds) => this.wait(seconds),
       predictions: () => PREDICTIONS,
       putBack: () => this.putBack(),
-      say: () => {},
+      showProgress: () => {},
     });
   }
 
@@ -75,8 +75,8 @@ class World {
   /** Path from the robot to the middle of the sheet, in the robot's own frame, mm. */
   get pathBack() {
     const { x, y, heading } = this.place;
-    const [ahead, left] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
-    return { ahead, left, reach: TAG_DISTANCE + NEAR_MARGIN, isNear: Math.hypot(x, y) > TAG_DISTANCE + NEAR_MARGIN };
+    const [forward, left] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
+    return { forward, left, reach: TAG_DISTANCE + NEAR_MARGIN, isNear: Math.hypot(x, y) > TAG_DISTANCE + NEAR_MARGIN };
   }
 
   /** Sends a line to the robot, which acts at once and answers later. */

@@ -8,7 +8,7 @@ import type { OffsetToMiddle } from './tag-tracker';
  * Limits of a return to the middle of the sheet by a gait: cycles per attempt, attempts, and the least share of the
  * distance that must lie ahead or behind.
  */
-const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minAheadShare: 0.7 };
+const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minForwardShare: 0.7 };
 /** Conditions for a gait by which the robot can return: least distance and largest turn, each per cycle. */
 const RETURN_GAIT = { minForwardMm: 3, maxTurnDeg: 2 };
 /** Distance from the middle, mm, beyond which the robot first returns if the next walk would leave the sheet. */
@@ -65,7 +65,7 @@ export interface Stage {
   /** Asks the user to put the robot back; resolves when that is done, or when the protocol is over. */
   putBack: () => Promise<void>;
   /** Shows the progress to the user. */
-  say: (text: string) => void;
+  showProgress: (text: string) => void;
 }
 
 /** Thrown when the protocol ends before its last walk; the message is the reason. */
@@ -84,7 +84,7 @@ interface ActiveWalk {
   reject: (error: Error) => void;
 }
 
-const distance = ({ ahead, left }: OffsetToMiddle) => Math.hypot(ahead, left);
+const distance = ({ forward, left }: OffsetToMiddle) => Math.hypot(forward, left);
 
 export class Protocol {
   /** The measured walks so far, without returns. */
@@ -110,7 +110,7 @@ export class Protocol {
       for (let cyclesLeft = cycles; cyclesLeft >= MIN_CYCLES; ) {
         await this.goBack(cyclesLeft * forward);
         await this.wait(pause);
-        stage.say(`${i + 1} of ${gaits.length}: ${command}, ${cyclesLeft} cycles`);
+        stage.showProgress(`${i + 1} of ${gaits.length}: ${command}, ${cyclesLeft} cycles`);
         const [start, end] = await this.walk(command, cyclesLeft, (during) => this.walks.push({ gait: command, during }));
         cyclesLeft -= Math.max(MIN_CYCLES, Math.floor(((end - start) * speed) / 100 / period));
       }
@@ -182,21 +182,21 @@ export class Protocol {
     for (let attempt = 0; ; attempt++) {
       const { lastOffset: offset, stage } = this;
       const isOnSheet = offset !== null && !offset.isNear;
-      const wouldLeave = offset !== null && attempt === 0 && distance(offset) > RETURN_DISTANCE_MM && Math.hypot(offset.ahead - forwardMm, offset.left) > offset.reach;
+      const wouldLeave = offset !== null && attempt === 0 && distance(offset) > RETURN_DISTANCE_MM && Math.hypot(offset.forward - forwardMm, offset.left) > offset.reach;
       if (isOnSheet && !wouldLeave) return;
-      const gait = offset && attempt < RETURN_LIMITS.maxAttempts && Math.abs(offset.ahead) > RETURN_LIMITS.minAheadShare * distance(offset) ? this.gaitToward(offset.ahead) : null;
+      const gait = offset && attempt < RETURN_LIMITS.maxAttempts && Math.abs(offset.forward) > RETURN_LIMITS.minForwardShare * distance(offset) ? this.gaitToward(offset.forward) : null;
       if (offset && gait) {
-        stage.say(`Back to the middle by ${gait.command}`);
-        await this.walk(gait.command, Math.min(RETURN_LIMITS.maxCycles, Math.max(1, Math.round(offset.ahead / gait.forward))));
+        stage.showProgress(`Back to the middle by ${gait.command}`);
+        await this.walk(gait.command, Math.min(RETURN_LIMITS.maxCycles, Math.max(1, Math.round(offset.forward / gait.forward))));
       } else if (isOnSheet) return;
       else await stage.putBack();
       this.throwIfEnded();
     }
   }
 
-  /** Returns the gait that walks farthest forward (backward if `ahead` is negative) and hardly turns, or null. */
-  private gaitToward(ahead: number): PredictedCycle | null {
-    const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(ahead) : 0);
+  /** Returns the gait that walks farthest forward (backward if `offsetMm` is negative) and hardly turns, or null. */
+  private gaitToward(offsetMm: number): PredictedCycle | null {
+    const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(offsetMm) : 0);
     const [best] = this.stage.predictions().sort((a, b) => progressOf(b) - progressOf(a));
     return best && progressOf(best) > RETURN_GAIT.minForwardMm ? best : null;
   }

@@ -25,7 +25,7 @@ const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, p
 
 /** The vector from the deck's tag to the middle of the floor's tags, in the robot's frame, mm. */
 export interface OffsetToMiddle {
-  ahead: number;
+  forward: number;
   left: number;
   /** Distance from the middle beyond which the robot is near the edge of the sheet, mm. */
   reach: number;
@@ -97,11 +97,11 @@ export class TagTracker {
     const [deckMiddle, middle] = [mean(deck.corners), mean(middles)];
     const offset = minus(middle, deckMiddle);
     const headingLength = lengthOf(heading);
-    const ahead = ((offset[0] * heading[0] + offset[1] * heading[1]) / headingLength) * scale;
+    const forward = ((offset[0] * heading[0] + offset[1] * heading[1]) / headingLength) * scale;
     const left = ((offset[0] * heading[1] - offset[1] * heading[0]) / headingLength) * scale;
     const reach = Math.max(...middles.map((point) => lengthOf(minus(point, middle)))) * scale + NEAR_MM;
     const edge = Math.min(deckMiddle[0], deckMiddle[1], size[0] - deckMiddle[0], size[1] - deckMiddle[1]) * scale;
-    return { ahead, left, reach, isNear: Math.hypot(ahead, left) > reach || edge < PICTURE_MARGIN_MM };
+    return { forward, left, reach, isNear: Math.hypot(forward, left) > reach || edge < PICTURE_MARGIN_MM };
   }
 
   /** Clears the path. */

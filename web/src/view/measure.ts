@@ -280,7 +280,7 @@ export class MeasureView {
       wait: (seconds) => session.link.wait(1000 * seconds),
       predictions: () => this.predictor.gaits.map(({ command, displacement: { forward, turn } }) => ({ command, forward: forward ?? 0, turn: turn ?? Infinity })),
       putBack: () => this.waitUntilPutBack(protocol),
-      say: (text) => this.setMessage(text),
+      showProgress: (text) => this.setMessage(text),
     });
     this.protocol = protocol;
     protocol.setPlace(this.tracker.offsetToMiddle);
