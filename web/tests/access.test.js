@@ -1,15 +1,12 @@
 // Accessibility: axe-core finds no violations, no screen scrolls sideways, and arrow keys pan the floor.
 import assert from 'node:assert/strict';
-import { createRequire } from 'node:module';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { advance, closeBrowser, complaints, openBrowser, openStanding, closePages, unfold } from './browser.js';
+import { findViolations } from './axe.js';
+import { advance, complaints, openStanding, unfold, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
-const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true };
 
 const ROOMS = {
@@ -47,10 +44,7 @@ for (const [name, options] of [
 ]) {
   test(`axe-core finds no violations, ${name}`, async () => {
     await checkEveryRoom(options, async (page, room) => {
-      if (room === 'drive') await page.addScriptTag({ path: AXE });
-      const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-      const violationTexts = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
-      assert.deepEqual(violationTexts, [], room);
+      assert.deepEqual(await findViolations(page), [], room);
     });
   });
 }
@@ -62,16 +56,13 @@ for (const [name, options] of [
 ]) {
   test(`axe-core finds no violations in any step of the first connection, ${name}`, async () => {
     const page = await openStanding({ ...options, bypassCSP: true });
-    await page.addScriptTag({ path: AXE });
     await page.locator('#setup-open').click();
     const steps = await page.locator('#setup-steps button').all();
     assert.equal(steps.length, 9);
     for (const step of steps) {
       await step.click();
       await advance(page, 1500);
-      const { violations } = await page.evaluate(() => window.axe.run('#setup', { resultTypes: ['violations'] }));
-      const violationTexts = violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`);
-      assert.deepEqual(violationTexts, [], await page.locator('#setup-step').innerText());
+      assert.deepEqual(await findViolations(page, '#setup'), [], await page.locator('#setup-step').innerText());
     }
   });
 }

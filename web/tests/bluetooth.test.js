@@ -1,27 +1,30 @@
 // A robot by Web Bluetooth: modules with their default settings, and failures of the link.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { afterEach, test } from 'node:test';
 
-import { closeBrowser, closePages, complaints, openBrowserWithBluetooth, openPage, text, unfold } from './browser.js';
+import { complaints, openBrowserWithBluetooth, openPage, text, unfold, useBrowser, hidePage } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
 
-before(openBrowserWithBluetooth);
+useBrowser(openBrowserWithBluetooth);
 afterEach(async () => {
-  await closePages();
   await radio?.close();
   radio = undefined;
 });
-after(closeBrowser);
 
 const activityOf = (page) => page.evaluate(() => window.lizard.gait);
 const pageTimeOf = (page) => page.evaluate(() => performance.now());
 
-async function openWalking(module) {
-  radio = await Radio.open(module);
-  const { page } = radio;
+/** Opens the page and picks a module that is in range. */
+async function openPicked(module, options) {
+  radio = await Radio.open(module, options);
   await radio.pick();
+  return radio.page;
+}
+
+async function openWalking(module) {
+  const page = await openPicked(module);
   await radio.runUntil('the robot is found', async () => (await text(page, '#where')).includes(`board at ${module.name} that has not restarted`));
   await radio.runUntil('the robot stands', async () => (await activityOf(page)) === 'stand');
   await page.locator('#gaits button[data-command="walk"]').click();
@@ -67,9 +70,7 @@ test('a robot whose link is cut stops, and the page reconnects by itself', async
 });
 
 test('a trim that was set out of range shows the robot\'s value when the robot answers again', async () => {
-  radio = await Radio.open(HM10);
-  const { page } = radio;
-  await radio.pick();
+  const page = await openPicked(HM10);
   await radio.runUntil('the robot stands', async () => (await activityOf(page)) === 'stand');
   await unfold(page, '#calibrate');
   const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
@@ -98,9 +99,7 @@ test('a stop that is pressed out of range is the first line that the robot recei
 });
 
 test('a module through which no robot answers is named', async () => {
-  radio = await Radio.open(HM10, { hasRobot: false });
-  const { page } = radio;
-  await radio.pick();
+  const page = await openPicked(HM10, { hasRobot: false });
   await radio.runUntil('the silence is shown', async () => (await text(page, '#problems')).includes('no robot answers'));
   assert.match(await text(page, '#problems'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
   assert.equal(await page.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
@@ -132,11 +131,8 @@ test('if Bluetooth is forbidden, the page says where to allow it', async () => {
 test('a phone whose screen goes off stops its robot with the last line that it sends', async () => {
   const page = await openWalking(HM10);
   await radio.run(1000);
-  const hiddenMs = await page.evaluate(() => {
-    Object.defineProperty(document, 'hidden', { value: true });
-    document.dispatchEvent(new Event('visibilitychange'));
-    return window.readBoardMs();
-  });
+  await hidePage(page);
+  const hiddenMs = await page.evaluate(() => window.readBoardMs());
   await radio.run(60);
   await radio.sleep(3000);
   const [lastMoveMs, receivedText] = await page.evaluate(() => [window.lastMoveBoardMs, window.receivedText]);

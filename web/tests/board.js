@@ -1,16 +1,27 @@
 // A board at the page's Web Serial port, run by the page's own clock.
-import { openPage, text, withTimeout } from './browser.js';
+import { openPage, repeatUntil, text } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
+
+/** Connects the board of the fake port after changing some of its settings. */
+export async function connect(page, settings = {}) {
+  await page.evaluate((settings) => Object.assign(window, settings), settings);
+  await page.locator('#connect').click();
+  await page.waitForFunction(() => window.attachedBoard);
+}
+
+/** Connects the same board again after it was unplugged. */
+export async function reconnect(page) {
+  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
+  await connect(page, { isSameBoard: true });
+}
 
 /**
  * Opens the page, connects a board that has the firmware and the named robot in its flash, and advances the page's
  * clock by `ms`.
  */
-export async function openWithBoard(robotName, ms) {
+export async function openWithBoard(robotName, ms, settings = {}) {
   const page = await openPage({}, installFakeSerial);
-  await page.evaluate((name) => (window.flashedRobot = name), robotName);
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
+  await connect(page, { flashedRobot: robotName, ...settings });
   await page.clock.runFor(ms);
   return page;
 }
@@ -18,7 +29,7 @@ export async function openWithBoard(robotName, ms) {
 /** Opens the page, connects a board with an erased flash, and waits until its boot loader has identified it. */
 export async function openWithErasedBoard() {
   const page = await openWithBoard(null, 0);
-  await runUntil(page, 'the board is identified', async () => /without this firmware$/.test(await text(page, '#where')));
+  await waitForText(page, '#where', /without this firmware$/);
   return page;
 }
 
@@ -29,14 +40,19 @@ export async function openWithDeafBoard() {
   return page;
 }
 
-/**
- * Advances the page's clock until `condition` returns true. Only real time is limited, because the page may also wait
- * for the machine.
- */
-export async function runUntil(page, waitName, condition, stepMs = 100) {
-  let isWaiting = true;
-  const advance = async () => {
-    while (isWaiting && !(await condition())) await page.clock.runFor(stepMs);
-  };
-  await withTimeout(waitName, advance()).finally(() => (isWaiting = false));
+/** Advances the page's clock until `condition` returns true. */
+export const runUntil = (page, waitName, condition, stepMs = 100) => repeatUntil(waitName, condition, () => page.clock.runFor(stepMs));
+
+/** Advances the page's clock until the text of an element matches. */
+export const waitForText = (page, selector, pattern, stepMs) =>
+  runUntil(page, `${selector} shows ${pattern}`, async () => pattern.test(await text(page, selector)), stepMs);
+
+/** Sends a line to the board, and waits until it is answered. */
+export async function sendToBoard(page, line) {
+  const countAnswers = () => page.locator('#log div', { hasText: `ok ${line}` }).count();
+  const previousCount = await countAnswers();
+  await page.getByLabel('A line for the robot').fill(line);
+  await page.getByRole('button', { name: 'Send' }).click();
+  await runUntil(page, `${line} is answered`, async () => (await countAnswers()) > previousCount);
+  await page.locator('#log').focus();
 }

@@ -1,14 +1,11 @@
 // A board on USB that is new, has another firmware, or is disconnected while it walks.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { closeBrowser, closePages, complaints, openBrowser, openPage, text, unfold } from './browser.js';
-import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil } from './board.js';
-import { installFakeSerial } from './fake-serial.js';
+import { complaints, text, unfold, useBrowser, chooseRobot } from './browser.js';
+import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, waitForText } from './board.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Waits until the log has `count` lines that match. */
 const waitForLine = (page, line, count = 1) =>
@@ -30,7 +27,7 @@ test('a new UNO is identified after some seconds, and one button writes the firm
   for (const control of ['#robot', '#connect']) {
     assert.ok(await page.locator(control).isDisabled(), `${control} would take the port from the boot loader`);
   }
-  await runUntil(page, 'the board is written', async () => /^written and verified in [\d.]+ s$/.test(await text(page, '#flash-said')));
+  await waitForText(page, '#flash-said', /^written and verified in [\d.]+ s$/);
   await page.clock.runFor(8000);
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await page.locator(control).isEnabled(), control);
@@ -40,15 +37,11 @@ test('a new UNO is identified after some seconds, and one button writes the firm
 
 test('for a board that does not answer, the page asks whether it is a UNO or a Nano', async () => {
   const page = await openWithDeafBoard();
-  await runUntil(page, 'the page asks', async () => /no boot loader answers\. Is it a UNO or a Nano\?/.test(await text(page, '#problems')));
+  await waitForText(page, '#problems', /no boot loader answers\. Is it a UNO or a Nano\?/);
 });
 
 test('a board that its port does not reset is queried for its state and tracked', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.evaluate(() => (window.boardKeepsRunning = true));
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
-  await page.clock.runFor(5000);
+  const page = await openWithBoard('robot', 5000, { boardKeepsRunning: true });
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   assert.match(await text(page, '#where'), /^on a board on USB that has not restarted/);
   assert.equal(await text(page, '#doing'), 'stand');
@@ -57,12 +50,10 @@ test('a board that its port does not reset is queried for its state and tracked'
 
 test('choosing another robot keeps the board connected', async () => {
   const page = await openWalking();
-  await page.locator('#robot').selectOption('large');
-  await page.waitForFunction(() => window.lizard.file === 'large');
+  await chooseRobot(page, 'large');
   assert.match(await text(page, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that one, or write this one$/);
   await page.locator('#connect', { hasText: 'Back to the simulation' }).waitFor();
-  await page.locator('#robot').selectOption('robot');
-  await page.waitForFunction(() => window.lizard.file === 'robot');
+  await chooseRobot(page, 'robot');
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await page.clock.runFor(500);
   assert.ok(await page.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'the robot is tracked');
@@ -189,7 +180,7 @@ test('a HEX file of another program is identified, and written only when the use
   assert.equal(await question.isVisible(), false);
   await chooseFile();
   await page.locator('#flash-yes').click();
-  await runUntil(page, 'the board is written', async () => /^(not )?written/.test(await text(page, '#flash-said')));
+  await waitForText(page, '#flash-said', /^(not )?written/);
   await page.clock.runFor(3000);
   await page.locator('#problems', { hasText: 'is not this firmware: it sends no banner.' }).waitFor();
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();

@@ -1,25 +1,17 @@
 // The book, opened from a file: its search finds a word.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtemp, rm } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 
-import { openBlank, closeBrowser, openBrowser, closePages } from './browser.js';
+import { openBlank, useBrowser } from './browser.js';
+import { makeFolder } from './folder.js';
 
-let folder;
+const folder = await makeFolder();
 
-before(async () => {
-  await openBrowser();
-  folder = await mkdtemp(join(tmpdir(), 'lizard-book-'));
+useBrowser();
+before(() => {
   const build = spawnSync('mkdocs', ['build', '--strict', '--quiet', '--site-dir', folder], { cwd: new URL('../..', import.meta.url), encoding: 'utf8' });
   assert.equal(build.status, 0, build.stderr);
-});
-after(async () => {
-  await closePages();
-  await closeBrowser();
-  await rm(folder, { recursive: true });
 });
 
 test('the search of the book finds a word without a server', async () => {

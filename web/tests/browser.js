@@ -3,6 +3,8 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
+import { after, afterEach, before } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
 
 import { chromium, firefox } from 'playwright-core';
 
@@ -46,6 +48,18 @@ export function withTimeout(waitName, promise) {
   return Promise.race([promise, timeout]).finally(() => clearTimeout(timer));
 }
 
+/**
+ * Repeats `step` until `condition` returns true. Only real time is limited, because the page may also wait for the
+ * machine.
+ */
+export async function repeatUntil(waitName, condition, step) {
+  let isWaiting = true;
+  const repeat = async () => {
+    while (isWaiting && !(await condition())) await step();
+  };
+  await withTimeout(waitName, repeat()).finally(() => (isWaiting = false));
+}
+
 /** Adds a time limit to methods that have none in Playwright. */
 function addTimeouts(object, name, methods) {
   for (const method of methods) {
@@ -69,14 +83,17 @@ export const openDevTools = () => browser.newBrowserCDPSession();
 /** Closes the pages of a test; otherwise their robots would continue to walk. */
 export async function closePages() {
   await withTimeout('the pages to close', Promise.all(pages.splice(0).map((page) => page.close())));
-  for (const testServer of testServers.splice(0)) testServer.close();
+  for (const testServer of testServers.splice(0)) {
+    testServer.closeAllConnections();
+    testServer.close();
+  }
 }
 
 /**
  * Starts a web server for a folder's files at BASE_PATH, with additional headers. Appends the paths of the requests to
  * `requestedPaths`.
  */
-export async function serve(folder, requestedPaths = [], headers = {}) {
+async function serve(folder, requestedPaths = [], headers = {}) {
   const webServer = createServer(async (request, response) => {
     const path = request.url.split('?')[0].replace(BASE_PATH, '/');
     requestedPaths.push(path);
@@ -95,6 +112,19 @@ export async function serve(folder, requestedPaths = [], headers = {}) {
   return webServer;
 }
 
+/** Starts a web server that is stopped after the test. */
+export async function serveInTest(...args) {
+  const webServer = await serve(...args);
+  testServers.push(webServer);
+  return webServer;
+}
+
+/** Stops a web server at once. */
+export async function stopServer(webServer) {
+  webServer.closeAllConnections();
+  await withTimeout('the server to close', new Promise((resolve) => webServer.close(resolve)));
+}
+
 async function startBrowser({ type, ...options }) {
   server = await serve(DIST);
   browser = await type.launch({ ...options, timeout: TIMEOUT_MS });
@@ -110,6 +140,13 @@ export const openFirefox = () => startBrowser(FIREFOX);
 export async function closeBrowser() {
   if (browser) await withTimeout('the browser to close', browser.close());
   server?.close();
+}
+
+/** Opens a browser for the tests of a file, and closes each test's pages after it. */
+export function useBrowser(open = openBrowser) {
+  before(open);
+  afterEach(closePages);
+  after(closeBrowser);
 }
 
 /** Opens the room and the panels of an element, by the links and headings that a user would press. */
@@ -184,15 +221,54 @@ export async function openBlank(options = {}) {
 export const overflow = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
+/** Chooses a robot of the page's list. */
+export async function chooseRobot(page, name) {
+  await page.locator('#robot').selectOption(name);
+  await page.waitForFunction((name) => window.lizard?.file === name, name);
+}
+
+/** Returns a length of the robot, mm. */
+export const lengthOf = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((length) => length.key === key).value, key);
+
+/** Waits until a length of the robot has a value. */
+export const waitForLength = (page, key, mm) =>
+  page.waitForFunction(([key, mm]) => window.lizard.description.lengths.find((length) => length.key === key).value === mm, [key, mm]);
+
+/** Types a length into its box, and leaves the box by Enter. */
+export async function typeLength(page, key, mm) {
+  const box = page.locator(`#lengths input[name="${key}"]`);
+  await box.fill(String(mm));
+  await box.press('Enter');
+  return box;
+}
+
+/** Presses a button that saves a file, and returns the file's name and bytes. */
+export async function download(page, button) {
+  const [file] = await Promise.all([page.waitForEvent('download'), button.click()]);
+  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
+}
+
+/** Opens the page of a server, and waits until its service worker has stored it and answers its requests. */
+export async function openStored(webServer) {
+  const page = await openBlank({ serviceWorkers: 'allow' });
+  await page.goto(address(webServer));
+  await waitUntil(page, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
+  return page;
+}
+
+/** Makes the page believe that its tab is hidden. */
+export const hidePage = (page) =>
+  page.evaluate(() => {
+    Object.defineProperty(document, 'hidden', { value: true });
+    document.dispatchEvent(new Event('visibilitychange'));
+  });
+
 /** Returns the text of an element. */
 export const text = (page, selector) => page.locator(selector).innerText();
 
 /** Waits until a function in the page returns true, or a promise of true. */
 export function waitUntil(page, condition, value) {
-  const pollCondition = async () => {
-    while (!(await page.evaluate(condition, value))) await new Promise((resolve) => setTimeout(resolve, 50));
-  };
-  return withTimeout(`${condition} in the page`, pollCondition());
+  return repeatUntil(`${condition} in the page`, () => page.evaluate(condition, value), () => sleep(50));
 }
 
 /**
@@ -236,8 +312,7 @@ export async function openPage(options = {}, initScript = undefined, url = addre
 
 /** Opens the page from a server whose policy forbids a browser feature, such as `serial`. */
 export async function openForbidden(feature, initScript) {
-  const strictServer = await serve(DIST, [], { 'permissions-policy': `${feature}=()` });
-  testServers.push(strictServer);
+  const strictServer = await serveInTest(DIST, [], { 'permissions-policy': `${feature}=()` });
   return openPage({}, initScript, address(strictServer));
 }
 

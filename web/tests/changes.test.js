@@ -1,26 +1,21 @@
 // The user's changes are in the downloaded file and survive a reload.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import {
-  address, advance, closeBrowser, complaints, openBrowser, openStanding, closePages, sendLine, unfold,
-} from './browser.js';
+import { address, advance, complaints, openStanding, sendLine, unfold, useBrowser, chooseRobot, lengthOf, waitForLength, typeLength, download } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Sets a slider to a value, as a user would. */
 async function setSlider(page, label, value) {
   await page.getByLabel(label).fill(value);
 }
 
-async function download(page, button = 'Download robot.toml') {
-  const pendingDownload = page.waitForEvent('download');
-  await page.getByRole('button', { name: button }).click();
-  const file = await (await pendingDownload).path();
-  return readFile(file, 'utf8');
+/** Downloads a robot.toml and returns its text. */
+async function downloadToml(page, buttonName = 'Download robot.toml') {
+  const { bytes } = await download(page, page.getByRole('button', { name: buttonName }));
+  return bytes.toString();
 }
 
 /** Reads the number of a key in a table of a robot.toml line by line, without a parser. */
@@ -44,16 +39,14 @@ async function openWithChanges() {
   await setSlider(page, 'Friction back : ahead', '1.5');
   await setSlider(page, 'Mass', '412');
   await unfold(page, '#lengths-panel');
-  const crank = page.locator('input[name="leg.crank"]');
-  await crank.fill('40');
-  await crank.press('Enter');
-  await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'leg.crank').value === 40);
+  await typeLength(page, 'leg.crank', 40);
+  await waitForLength(page, 'leg.crank', 40);
   return page;
 }
 
 test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async () => {
   const page = await openWithChanges();
-  const toml = await download(page);
+  const toml = await downloadToml(page);
   const values = [
     ['leg', 'crank'],
     ['leg.drive', 'force'],
@@ -68,44 +61,41 @@ test('the downloaded robot.toml has lengths, drive, feet, floor and mass', async
   assert.match(toml, /^kind = "strut"$/m);
 });
 
+async function openLengths() {
+  const page = await openStanding();
+  await unfold(page, '#lengths-panel');
+  await page.locator('#sketch circle').first().waitFor();
+  return page;
+}
+
 /** Types a length that is refused; returns the message, and the text of the button that offers another length. */
 async function typeRefusedLength(page, key, value) {
-  const input = page.locator(`#lengths input[name="${key}"]`);
-  await input.fill(String(value));
-  await input.press('Enter');
+  await typeLength(page, key, value);
   const offer = page.locator('#lengths-instead button');
   await offer.waitFor();
   return [await page.locator('#lengths-refusal').innerText(), await offer.innerText()];
 }
 
-const lengthOf = (page, name) => page.evaluate((name) => window.lizard.description.lengths.find(({ key }) => key === name).value, name);
-
 test('a refused length is explained by its effect on the robot, with the nearest valid one', async () => {
-  const page = await openStanding();
-  await unfold(page, '#lengths-panel');
-  await page.locator('#sketch circle').first().waitFor();
+  const page = await openLengths();
   const [refusalText, offerText] = await typeRefusedLength(page, 'links.l12', 80);
   assert.equal(refusalText, '80 mm is too long: in the neutral pose the left slider would run into its end.');
   const nearest = Number(/^Try ([0-9.]+) mm$/.exec(offerText)?.[1]);
   assert.ok(nearest > 45 && nearest < 80, offerText);
   await page.locator('#lengths-instead button').click();
-  await page.waitForFunction((nearest) => window.lizard.description.lengths.find(({ key }) => key === 'links.l12').value === nearest, nearest);
+  await waitForLength(page, 'links.l12', nearest);
   assert.equal(await page.locator('#lengths-instead button').count(), 0);
   // Half a millimetre more is refused, so this one is the nearest.
-  const input = page.locator('#lengths input[name="links.l12"]');
-  await input.fill(String(nearest + 0.5));
-  await input.press('Enter');
+  await typeLength(page, 'links.l12', nearest + 0.5);
   await page.locator('#lengths-refusal', { hasText: `${nearest + 0.5} mm is too long` }).waitFor();
   assert.equal(await lengthOf(page, 'links.l12'), nearest);
 });
 
 test('a button drops the gait that forbids a length, and the length is accepted', async () => {
-  const page = await openStanding();
-  await unfold(page, '#lengths-panel');
-  await page.locator('#sketch circle').first().waitFor();
+  const page = await openLengths();
   assert.deepEqual(await typeRefusedLength(page, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
   await page.locator('#lengths-instead button', { hasText: 'Drop' }).click();
-  await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 60);
+  await waitForLength(page, 'links.l2', 60);
   const gaits = await page.evaluate(() => window.lizard.description.gaits.map(({ name }) => name));
   assert.ok(!gaits.includes('look') && gaits.includes('walk'), gaits.join());
   await unfold(page, '#robot-editor');
@@ -117,7 +107,7 @@ test('an unchanged file is downloaded unchanged', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   const originalToml = await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8');
-  assert.equal(await download(page), originalToml);
+  assert.equal(await downloadToml(page), originalToml);
 });
 
 test('a reload keeps the user\'s changes', async () => {
@@ -152,7 +142,7 @@ test('stored changes to a file that has changed since are dropped, with a messag
   await page.waitForFunction(() => window.lizard);
   await page.locator('#problems', { hasText: 'robot.toml is not the file of last time' }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8'));
-  const lostToml = await download(page, 'Download what was changed');
+  const lostToml = await downloadToml(page, 'Download what was changed');
   assert.deepEqual([readNumber(lostToml, 'leg', 'crank'), readNumber(lostToml, 'body', 'mass')], [40, 412], 'the changes are not lost');
 });
 
@@ -234,8 +224,7 @@ test('predictions come with the page for an unchanged robot, and are computed fo
   const robots = await page.locator('#robot option').evaluateAll((options) => options.map(({ value }) => value));
   assert.ok(robots.includes('own-gaits') && robots.length > 4);
   for (const name of robots) {
-    await page.locator('#robot').selectOption(name);
-    await page.waitForFunction((name) => window.lizard.file === name, name);
+    await chooseRobot(page, name);
     const predicted = await page.evaluate(() => {
       const { robot, description } = window.lizard;
       return description.gaits.map((_, gait) => robot.predict(gait));
@@ -249,8 +238,7 @@ test('predictions come with the page for an unchanged robot, and are computed fo
   }
   assert.equal(countWorkers(), 0, 'no worker was started');
 
-  await page.locator('#robot').selectOption('robot');
-  await page.waitForFunction(() => window.lizard.file === 'robot');
+  await chooseRobot(page, 'robot');
   const [, walkNote] = await readNotes();
   await setSlider(page, 'Friction back : ahead', '1.5');
   await page.waitForFunction((walkNote) => document.querySelector('#gaits button[data-command="walk"] small').textContent !== walkNote, walkNote);

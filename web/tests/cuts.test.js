@@ -1,14 +1,12 @@
 // The cable is pulled at random moments: the page's message about the board is compared with the board's memory.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { openWithBoard, runUntil } from './board.js';
-import { closeBrowser, closePages, complaints, openBrowser, text, unfold } from './browser.js';
+import { openWithBoard, runUntil, connect, waitForText } from './board.js';
+import { complaints, text, unfold, useBrowser } from './browser.js';
 import { imageOf } from './image.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Seed of the random moments; the environment variable SEED sets another. */
 let seed = Number(process.env.SEED ?? 1);
@@ -28,11 +26,8 @@ async function pullCable(page) {
 
 /** Plugs in the same board, or another board with the named robot. */
 async function plugIn(page, robotName) {
-  await page.evaluate((flashedRobot) => {
-    Object.assign(window, { isSameBoard: flashedRobot === undefined, flashedRobot });
-  }, robotName);
-  await page.locator('#connect').click();
-  await runUntil(page, 'the board greets', async () => /^on a board on USB/.test(await text(page, '#where')));
+  await connect(page, { isSameBoard: robotName === undefined, flashedRobot: robotName });
+  await waitForText(page, '#where', /^on a board on USB/);
 }
 
 test('the page reports a robot as written only if its bytes are on the board, after any cut', async (t) => {
@@ -45,7 +40,7 @@ test('the page reports a robot as written only if its bytes are on the board, af
     await page.locator('#flash-robot').click();
     await page.clock.runFor(ms);
     await pullCable(page);
-    await runUntil(page, 'the page reports the outcome', async () => /^(not )?written/.test(await text(page, '#flash-said')));
+    await waitForText(page, '#flash-said', /^(not )?written/);
     const message = await text(page, '#flash-said');
     const boardBytes = await readBytes(page, 'flash', SECTION_START, SECTION_START + robotBytes.length);
     const outcome = boardBytes.equals(robotBytes) ? 'complete' : boardBytes.equals(largeBytes) ? 'untouched' : 'part';
@@ -78,7 +73,7 @@ test('the page reports a calibration as saved only if the board starts with it, 
     await openStep('Trims');
     await press('A3 back right');
     await press('↺ 0.5°');
-    await runUntil(page, 'the trim is set', async () => /^The trim of A3 is/.test(await readMessage()));
+    await waitForText(page, '#setup-said', /^The trim of A3 is/);
     const expectedTrim = Number(/is (-?[\d.]+)°/.exec(await readMessage())[1]);
     await openStep('Keep');
     await press('Save in the board');

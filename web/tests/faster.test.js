@@ -1,20 +1,16 @@
 // "Make it faster": the search finds the gait that `lizard tune` finds, can be stopped, and refuses what is impossible.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 import { promisify } from 'node:util';
 
-import {
-  advance, closeBrowser, complaints, openBrowser, overflow, openStanding, closePages, text, unfold, withTimeout,
-} from './browser.js';
+import { findViolations } from './axe.js';
+import { advance, complaints, overflow, openStanding, text, unfold, withTimeout, useBrowser, typeLength } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 
@@ -34,6 +30,32 @@ const startSearch = (page) => page.getByRole('button', { name: 'Make it faster' 
 const waitForSearchEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
 /** Waits until a number of gaits have been tried. */
 const waitForTries = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
+
+async function stopSearch(page) {
+  await page.getByRole('button', { name: 'Stop the search' }).click();
+  await waitForSearchEnd(page);
+}
+
+/** Searches until a number of gaits have been tried. */
+async function searchUntil(page, count) {
+  await startSearch(page);
+  await waitForTries(page, count);
+  await stopSearch(page);
+}
+
+/** Waits until the robot walks with the gait that was found. */
+async function waitForFoundGait(page) {
+  await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
+  await advance(page, 3000);
+  await page.waitForFunction(() => window.lizard.gait === 'mine');
+}
+
+/** Stops the robots and returns the distances that they have walked. */
+async function stopAndCompare(page) {
+  await page.keyboard.press('Escape');
+  await advance(page, 1000);
+  return text(page, '#faster-ways');
+}
 
 test('the search finds the same gait as lizard tune with the same seed, which can be tried and undone', async () => {
   const page = await openEditor();
@@ -66,9 +88,7 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
   await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction((fragment) => document.querySelector('#gait-table').textContent === fragment, tuneResult.fragment);
   await page.locator('#gait-try').click();
-  await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
-  await advance(page, 3000);
-  await page.waitForFunction(() => window.lizard.gait === 'mine');
+  await waitForFoundGait(page);
   assert.ok((await page.evaluate(() => window.lizard.toml)).includes(tuneResult.fragment));
   await unfold(page, '#robot-editor');
   await page.locator('#robot-undo').click();
@@ -77,10 +97,7 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
 
 test('a search stopped midway returns the best gait so far, and the page can search again', async () => {
   const page = await openEditor({ rounds: 200 });
-  await startSearch(page);
-  await waitForTries(page, 21);
-  await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForSearchEnd(page);
+  await searchUntil(page, 21);
   const message = await text(page, '#faster-said');
   const [, triedCount] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(message) ?? assert.fail(message);
   assert.ok(Number(triedCount) >= 21 && Number(triedCount) < 8040, message);
@@ -91,30 +108,22 @@ test('a search stopped midway returns the best gait so far, and the page can sea
   await startSearch(page);
   await waitForTries(page, 1);
   assert.ok(await page.locator('#faster-result').isHidden());
-  await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForSearchEnd(page);
+  await stopSearch(page);
 });
 
 test('the found gait walks beside the previous one, and is faster by the promised ratio', async () => {
   const page = await openEditor({ rounds: 200 });
   await page.locator('#button-3d').click();
-  await startSearch(page);
-  await waitForTries(page, 21);
-  await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForSearchEnd(page);
+  await searchUntil(page, 21);
   const rows = await page.locator('#faster-rows tr').allInnerTexts();
   const [, previousSpeed, foundSpeed] = rows.map((row) => row.split('\t')).find(([name]) => name === 'speed').map(Number.parseFloat);
   assert.ok(foundSpeed > previousSpeed, rows.join());
   await page.getByRole('button', { name: 'See both walk' }).click();
   assert.ok(await page.locator('#canvas-3d').isHidden(), 'the drawing from above shows both robots');
-  await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
-  await advance(page, 3000);
-  await page.waitForFunction(() => window.lizard.gait === 'mine');
+  await waitForFoundGait(page);
   await advance(page, 8000);
   await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-ways').textContent));
-  await page.keyboard.press('Escape');
-  await advance(page, 1000);
-  const comparison = await text(page, '#faster-ways');
+  const comparison = await stopAndCompare(page);
   const [, foundDistance, previousDistance] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed} mm/s`);
   assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays');
@@ -128,23 +137,16 @@ test('for a turn the page shows both angles, and the found gait turns faster by 
     await page.getByLabel(`${leg} share`).fill(share);
     await page.keyboard.press('Tab');
   }
-  await startSearch(page);
-  await waitForTries(page, 41);
-  await page.getByRole('button', { name: 'Stop the search' }).click();
-  await waitForSearchEnd(page);
+  await searchUntil(page, 41);
   const rows = (await page.locator('#faster-rows tr').allInnerTexts()).map((row) => row.split('\t'));
   const [, previousSpeed, foundSpeed] = rows.find(([name]) => name === 'speed');
   assert.ok([previousSpeed, foundSpeed].every((speed) => /^[0-9.]+ °\/s$/.test(speed)), `${previousSpeed} and ${foundSpeed}`);
   const promisedRatio = Number.parseFloat(foundSpeed) / Number.parseFloat(previousSpeed);
   assert.ok(promisedRatio > 1.2, `${previousSpeed} and ${foundSpeed}`);
   await page.getByRole('button', { name: 'See both walk' }).click();
-  await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
-  await advance(page, 3000);
-  await page.waitForFunction(() => window.lizard.gait === 'mine');
+  await waitForFoundGait(page);
   await advance(page, 40_000);
-  await page.keyboard.press('Escape');
-  await advance(page, 1000);
-  const comparison = await text(page, '#faster-ways');
+  const comparison = await stopAndCompare(page);
   const [, foundAngle, previousAngle] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundAngle / previousAngle / promisedRatio - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed}`);
   assert.ok(Number(foundAngle) > 360, `${foundAngle} is not more than a full turn`);
@@ -155,8 +157,7 @@ test('changing the robot ends a search for the previous one', async () => {
   await startSearch(page);
   await waitForTries(page, 1);
   await unfold(page, '#lengths-panel');
-  await page.locator('#lengths input[name="links.l12"]').fill('46');
-  await page.keyboard.press('Enter');
+  await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
   await waitForSearchEnd(page);
   assert.equal(await text(page, '#faster-said'), 'The robot has changed, so the search for the previous one has ended.');
@@ -197,9 +198,7 @@ test('the room works by keyboard alone, fits a phone, and has no violations for 
   await page.keyboard.press('Enter');
   await page.locator('#faster-result').waitFor();
   assert.equal(await overflow(page), 0);
-  await page.addScriptTag({ path: createRequire(import.meta.url).resolve('axe-core/axe.min.js') });
-  const { violations } = await page.evaluate(() => window.axe.run('.faster', { resultTypes: ['violations'] }));
-  assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`), []);
+  assert.deepEqual(await findViolations(page, '.faster'), []);
   await page.keyboard.press('Enter');
   await waitForSearchEnd(page);
   assert.match(await text(page, '#faster-said'), /^Stopped after /);

@@ -1,13 +1,11 @@
 // The page in Debian's Firefox. Boards at a port are tested in Chromium only: on a busy machine a simulated board is
 // slower than real time, and only in Chromium can a test stop the page's clock.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { DIST, address, advance, openBlank, closeBrowser, complaints, openFirefox, serve, overflow, openStanding, assertStops, closePages, waitUntil, withTimeout } from './browser.js';
+import { DIST, advance, complaints, openFirefox, overflow, openStanding, assertStops, useBrowser, serveInTest, stopServer, openStored } from './browser.js';
 
-before(openFirefox);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser(openFirefox);
 
 const click = (page, selector) => page.evaluate((selector) => document.querySelector(selector).click(), selector);
 const text = (page, selector) => page.evaluate((selector) => document.querySelector(selector).textContent, selector);
@@ -63,13 +61,9 @@ test('the page fits a phone and a large screen without scrolling sideways', asyn
 });
 
 test('once opened, the page works without a server', async () => {
-  const server = await serve(DIST);
-  const page = await openBlank({ serviceWorkers: 'allow' });
-  await page.goto(address(server));
-  await waitUntil(page, async () =>
-    (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
-  server.closeAllConnections();
-  await withTimeout('the server to close', new Promise((resolve) => server.close(resolve)));
+  const server = await serveInTest(DIST);
+  const page = await openStored(server);
+  await stopServer(server);
   await page.reload();
   await page.waitForFunction(() => window.lizard);
   await advance(page, 2500);

@@ -1,19 +1,24 @@
 // A gait is made by dragging bars: it walks as predicted, and a gait that violates a limit is refused with the nearest
 // valid value.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { advance, closeBrowser, complaints, openBrowser, openStanding, closePages, unfold } from './browser.js';
+import { advance, complaints, openStanding, unfold, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
-async function openEditor(options) {
-  const page = await openStanding(options);
+async function unfoldEditor(page) {
   await unfold(page, '#gait-editor');
   await waitForPrediction(page);
   return page;
+}
+
+const openEditor = async () => unfoldEditor(await openStanding());
+
+async function reload(page) {
+  await page.reload();
+  await page.waitForFunction(() => window.lizard);
+  await unfoldEditor(page);
 }
 
 const editorText = (page, id) => page.locator(`#gait-${id}`).innerText();
@@ -61,19 +66,13 @@ test('an edited gait survives a reload, and an invalid stored one is dropped', a
   const page = await openEditor();
   await page.locator('#gait-name').fill('waddle');
   await page.getByLabel('LF starts at').fill('0.35');
-  await page.reload();
-  await page.waitForFunction(() => window.lizard);
-  await unfold(page, '#gait-editor');
-  await waitForPrediction(page);
+  await reload(page);
   assert.equal(await page.locator('#gait-name').inputValue(), 'waddle');
   assert.equal(await page.getByLabel('LF starts at').inputValue(), '0.35');
   assert.match(await editorText(page, 'table'), /^\[gait\.waddle\]/);
   for (const stored of ['{', '3', '{"name":"x","held":false,"period":1,"duty":0.5,"amplitude":20,"start":[0,0,0],"gain":[1,1,1,1]}']) {
     await page.evaluate((stored) => localStorage.setItem(`lizard ${location.pathname} gait`, stored), stored);
-    await page.reload();
-    await page.waitForFunction(() => window.lizard);
-    await unfold(page, '#gait-editor');
-    await waitForPrediction(page);
+    await reload(page);
     assert.match(await editorText(page, 'table'), /^\[gait\.mine\]/);
   }
 });

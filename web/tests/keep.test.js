@@ -1,15 +1,10 @@
 // A run is recorded, replayed and saved, and two robots walk on one floor.
 import assert from 'node:assert/strict';
-import { readFile } from 'node:fs/promises';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import {
-  advance, closeBrowser, complaints, openBrowser, openStanding, closePages, sendLine, unfold,
-} from './browser.js';
+import { advance, complaints, openStanding, sendLine, unfold, useBrowser, chooseRobot, download } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 async function openKeep(options) {
   const page = await openStanding(options);
@@ -26,13 +21,7 @@ const waitForFrames = async (page, count) =>
   page.waitForFunction((end) => window.lizard.link.board.cycle > end, CYCLES_PER_FRAME * ((await frameCountOf(page)) + count));
 const buttonOf = (page, name) => page.locator('#keep').getByRole('button', { name, exact: true });
 
-/** Presses a button and returns the file that it saves. */
-async function saveFile(page, buttonName) {
-  const download = page.waitForEvent('download');
-  await buttonOf(page, buttonName).click();
-  const file = await download;
-  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
-}
+const saveFile = (page, buttonName) => download(page, buttonOf(page, buttonName));
 
 /** Reads the rows of a CSV table as objects with the columns' names as keys. */
 function parseCsv(csv) {
@@ -80,8 +69,7 @@ test('a run is replayed from any moment, while the robot continues', async () =>
   await buttonOf(page, 'Replay').click();
   await page.waitForFunction(() => Number(document.querySelector('#moment').value) > 1.1);
   // The recording does not belong to another robot.
-  await page.locator('#robot').selectOption('large');
-  await page.waitForFunction(() => window.lizard.file === 'large');
+  await chooseRobot(page, 'large');
   assert.ok(await buttonOf(page, 'Replay').isDisabled());
 });
 

@@ -1,13 +1,11 @@
 // The layout of the page does not change after the first frame, with narrow and with wide letters, and the view of the
 // floor follows the floor's size.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { address, advance, openBlank, closeBrowser, openBrowser, openStanding, closePages, complaints } from './browser.js';
+import { address, advance, openBlank, openStanding, complaints, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Returns left, top, width and height of the main elements, CSS pixels. */
 const boundsOf = (page) =>
@@ -25,15 +23,8 @@ function setLetterHeight(height) {
   document.adoptedStyleSheets = [sheet];
 }
 
-for (const [letters, height] of [
-  ['narrow', 0.45],
-  ['wide', 0.62],
-]) {
-  for (const [width, viewHeight] of [
-    [1400, 700],
-    [1280, 800],
-    [390, 844],
-  ]) {
+for (const [letters, height] of [['narrow', 0.45], ['wide', 0.62]]) {
+  for (const [width, viewHeight] of [[1400, 700], [1280, 800], [390, 844]]) {
     test(`nothing moves after the first frame: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
       const page = await openBlank({ viewport: { width, height: viewHeight } });
       await page.addInitScript(setLetterHeight, height);

@@ -1,14 +1,11 @@
 // A link that loses lines: a stop reaches the robot, and the page shows only the states that the robot has reported.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { openWithBoard, runUntil } from './board.js';
-import { advance, closeBrowser, closePages, complaints, openBrowser, openStanding, openPage, text } from './browser.js';
-import { installFakeSerial } from './fake-serial.js';
+import { openWithBoard, runUntil, waitForText, sendToBoard } from './board.js';
+import { advance, complaints, openStanding, text, useBrowser, hidePage } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const receivedTextOf = (page) => page.evaluate(() => window.receivedText);
 const isStopping = (page) => page.evaluate(() => document.body.classList.contains('stopping'));
@@ -27,27 +24,21 @@ const dropLines = (page, words) =>
   }, words);
 const restoreLink = (page) => page.evaluate(() => (window.attachedBoard.send = window.originalSend));
 
-async function sendLine(page, line) {
-  const countAnswers = () => page.locator('#log div', { hasText: `ok ${line}` }).count();
-  const previousCount = await countAnswers();
-  await page.locator('#typed').fill(line);
-  await page.getByRole('button', { name: 'Send' }).click();
-  await runUntil(page, `${line} is answered`, async () => (await countAnswers()) > previousCount);
-  await page.locator('#log').focus();
+async function startWalk(page) {
+  await page.locator('#gaits button[data-command="walk"]').click();
+  await waitForText(page, '#doing', /^walk$/);
 }
 
 async function openWalking() {
   const page = await openWithBoard('robot', 8000);
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await runUntil(page, 'the robot walks', async () => (await text(page, '#doing')) === 'walk');
+  await startWalk(page);
   return page;
 }
 
 test('"stop" is sent at once, and a line that waits for a lost answer is not sent after it', async () => {
   const page = await openWalking();
   await dropLines(page, ['status']);
-  await runUntil(page, 'a status request is lost', async () =>
-    (await page.evaluate(() => window.droppedCount)) > 0, 20);
+  await runUntil(page, 'a status request is lost', () => page.evaluate(() => window.droppedCount > 0), 20);
   await page.locator('#gaits button[data-command="left"]').click();
   const receivedLength = (await receivedTextOf(page)).length;
   await page.keyboard.press('Escape');
@@ -77,7 +68,7 @@ test('a lost "stop" is sent again until the robot answers, and the page is red u
 
 test('a robot that rests gets no repeated "stop"', async () => {
   const page = await openWithBoard('robot', 8000);
-  await sendLine(page, 'rest');
+  await sendToBoard(page, 'rest');
   const receivedLength = (await receivedTextOf(page)).length;
   await page.keyboard.press('Escape');
   await page.clock.runFor(1500);
@@ -111,7 +102,7 @@ test('answers to repeated stops are not mistaken for answers to the next lines',
   await page.clock.runFor(1100);
   assert.ok((await receivedTextOf(page)).split('stop').length > 4, '"stop" was sent again');
   await page.locator('#gaits button[data-command="left"]').click();
-  await runUntil(page, 'the robot turns', async () => (await text(page, '#doing')) === 'left');
+  await waitForText(page, '#doing', /^left$/);
   await page.keyboard.press('Escape');
   await page.clock.runFor(3000);
   assert.equal(await text(page, '#doing'), 'stop');
@@ -205,12 +196,12 @@ test('a robot out of range stops, and reports the reason when it is in range aga
 
 test('stopping the robot restores its own deadman', async () => {
   const page = await openWithBoard('robot', 8000);
-  await sendLine(page, 'deadman 5000');
+  await sendToBoard(page, 'deadman 5000');
   await page.locator('#gaits button[data-command="walk"]').click();
   await page.clock.runFor(1500);
   // The robot's own setting is saved.
-  await sendLine(page, 'save');
-  await sendLine(page, 'cal');
+  await sendToBoard(page, 'save');
+  await sendToBoard(page, 'cal');
   await page.locator('#log div', { hasText: /^# deadman 5000$/ }).waitFor();
   assert.equal(await text(page, '#doing'), 'walk');
   await page.keyboard.press('Escape');
@@ -230,30 +221,22 @@ test('a deadman left behind by a page is not mistaken for the robot\'s own', asy
 });
 
 test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven as a radio', async () => {
-  const page = await openPage({}, installFakeSerial);
   const bluetoothService = '00001101-0000-1000-8000-00805f9b34fb';
-  const settings = { boardKeepsRunning: true, moduleBaud: 9600, bluetoothService };
-  await page.evaluate((settings) => Object.assign(window, settings), settings);
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
-  await runUntil(page, 'the robot is found', async () => (await text(page, '#where')).startsWith('on a board on Bluetooth that has not restarted'));
+  const page = await openWithBoard('robot', 0, { boardKeepsRunning: true, moduleBaud: 9600, bluetoothService });
+  await waitForText(page, '#where', /^on a board on Bluetooth that has not restarted/);
   assert.deepEqual(await page.evaluate(() => window.portRequest.allowedBluetoothServiceClassIds), [bluetoothService]);
   assert.match(await receivedTextOf(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
   const baudRate = await page.evaluate(() => window.attachedBoard.uno.usart.baudRate);
   assert.ok(Math.abs(baudRate / 9600 - 1) < 0.03, `the chip has not found the baud rate: ${baudRate} baud`);
   assert.ok(await page.locator('#flash-write').isDisabled());
-  await page.locator('#gaits button[data-command="walk"]').click();
-  await runUntil(page, 'the robot walks', async () => (await text(page, '#doing')) === 'walk');
+  await startWalk(page);
   await page.keyboard.press('Escape');
-  await runUntil(page, 'the robot stops', async () => (await text(page, '#doing')) === 'stop');
+  await waitForText(page, '#doing', /^stop$/);
 });
 
 test('a hidden page stops the robot', async () => {
   const page = await openWalking();
-  await page.evaluate(() => {
-    Object.defineProperty(document, 'hidden', { value: true });
-    document.dispatchEvent(new Event('visibilitychange'));
-  });
+  await hidePage(page);
   await page.clock.runFor(500);
   assert.equal(await page.evaluate(() => window.lizard.gait), 'stop');
 });
@@ -261,10 +244,7 @@ test('a hidden page stops the robot', async () => {
 test('a hidden page stops sending the lines that keep a robot walking', async () => {
   const page = await openWalking();
   await dropLines(page, ['stop']);
-  await page.evaluate(() => {
-    Object.defineProperty(document, 'hidden', { value: true });
-    document.dispatchEvent(new Event('visibilitychange'));
-  });
+  await hidePage(page);
   await page.clock.runFor(3000);
   assert.equal(await isMoving(page, 500), false);
 });

@@ -1,19 +1,18 @@
 // The measuring room, with a rendered film as the browser's camera, so that the true motion is known.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { afterEach, before, test } from 'node:test';
 
-import {
-  address, openBlank, closeBrowser, complaints, openBrowserWithCamera, openPage, closePages,
-} from './browser.js';
+import { connect } from './board.js';
+import { address, openBlank, closeBrowser, complaints, openBrowserWithCamera, openPage, closePages, download } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
+import { makeFolder } from './folder.js';
 
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
-const folder = mkdtempSync(join(tmpdir(), 'lizard-film-'));
+const folder = await makeFolder();
 /** Largest differences of a mean from the true value, mm and deg; the same as in the tests of crates/film. */
 const TOLERANCES = { forward: 0.3, left: 0.3, turn: 0.5 };
 
@@ -34,16 +33,19 @@ afterEach(async () => {
   await closePages();
   await closeBrowser();
 });
-after(() => rmSync(folder, { recursive: true }));
-
-const roomUrl = () => `${address()}#room=measure&file=paper`;
 
 /** Opens the room with the paper's robot, and waits until it stands. */
-async function openRoom(options = {}) {
-  const page = await openPage(options, undefined, roomUrl());
+async function openRoom() {
+  const page = await openPage({}, undefined, `${address()}#room=measure&file=paper`);
   await page.waitForFunction(() => window.lizard?.gait === 'stand' && window.lizard.mayAsk);
   await page.locator('#measure-height').pressSequentially('95');
   return page;
+}
+
+/** Opens the room in a browser with a film as its camera, or without a camera if there is no film. */
+async function openRoomWithFilm(filmFolder) {
+  await openBrowserWithCamera(filmFolder && join(filmFolder, 'film.y4m'));
+  return openRoom();
 }
 
 const waitForMessage = (page, id, words) => page.locator(`#measure-${id}`, { hasText: words }).waitFor();
@@ -72,10 +74,7 @@ async function startDriving(page, gaits, cycleCount, filmMs = 0) {
 }
 
 /** Downloads the results in a format and returns the content of the file. */
-async function download(page, format) {
-  const [downloaded] = await Promise.all([page.waitForEvent('download'), page.locator(`#measured-${format}`).click()]);
-  return readFileSync(await downloaded.path());
-}
+const downloadResults = async (page, format) => (await download(page, page.locator(`#measured-${format}`))).bytes;
 
 /** Measures the same pictures with `lizard measure` and returns the report. */
 const measureWithCommand = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walkFolder, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
@@ -88,12 +87,11 @@ function assertNearTruth(report) {
 }
 
 test('the page drives the simulated robot in front of a camera, and measures the gait in the film as lizard measure does', async () => {
-  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
-  const page = await openRoom({ acceptDownloads: true });
+  const page = await openRoomWithFilm(walkFolder);
   await startDriving(page, ['walk'], 5);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await page.locator('#measure-results').waitFor();
-  const { gaits: [report] } = JSON.parse(await download(page, 'json'));
+  const { gaits: [report] } = JSON.parse(await downloadResults(page, 'json'));
   assertNearTruth(report);
   const expected = measureWithCommand();
   assertNearTruth(expected);
@@ -109,9 +107,9 @@ test('the page drives the simulated robot in front of a camera, and measures the
   assert.equal(report.range.least_by, expected.range.least_by);
   const cells = await page.locator('#measured tr', { hasText: 'ahead, mm' }).first().locator('td').allTextContents();
   assert.equal(cells.at(-1), `+${expected.mujoco[0].toFixed(2)}`);
-  assert.match(String(await download(page, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);
-  assert.match(String(await download(page, 'svg')), /^<svg .*walk, 100 %, .*ahead, mm.*<\/svg>$/s);
-  assert.deepEqual([...(await download(page, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
+  assert.match(String(await downloadResults(page, 'csv')), /^gait,speed,cycles,forward_mean.*\nwalk,100,\d/);
+  assert.match(String(await downloadResults(page, 'svg')), /^<svg .*walk, 100 %, .*ahead, mm.*<\/svg>$/s);
+  assert.deepEqual([...(await downloadResults(page, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
 });
 
 test('the gait in a film file recorded by the browser is found by its path; with another gait it is not measured', async () => {
@@ -134,10 +132,10 @@ test('the gait in a film file recorded by the browser is found by its path; with
     return reader.result.split(',')[1];
   });
   writeFileSync(join(folder, 'film.webm'), Buffer.from(bytes, 'base64'));
-  const page = await openRoom({ acceptDownloads: true });
+  const page = await openRoom();
   await page.locator('#measure-file').setInputFiles(join(folder, 'film.webm'));
   await page.locator('#measure-results').waitFor();
-  const { gaits: [report] } = JSON.parse(await download(page, 'json'));
+  const { gaits: [report] } = JSON.parse(await downloadResults(page, 'json'));
   assertNearTruth(report);
   assert.equal(report.gait, 'walk');
   await page.locator('#measure-gait').selectOption('left');
@@ -150,19 +148,17 @@ test('the gait in a film file recorded by the browser is found by its path; with
 });
 
 test('if another program drives, the film that is recorded until Done is measured', async () => {
-  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
-  const page = await openRoom({ acceptDownloads: true });
+  const page = await openRoomWithFilm(walkFolder);
   await switchCameraOn(page);
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(6000);
   await page.getByRole('button', { name: 'Done' }).click();
   await page.locator('#measure-results').waitFor();
-  assertNearTruth(JSON.parse(await download(page, 'json')).gaits[0]);
+  assertNearTruth(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
 });
 
 test('a hidden tag is named while the camera is on, and no result is computed', async () => {
-  await openBrowserWithCamera(join(renderFilm('hidden', 640, 1, 2), 'film.y4m'));
-  const page = await openRoom();
+  const page = await openRoomWithFilm(renderFilm('hidden', 640, 1, 2));
   await switchCameraOn(page, 'Not seen: the left tag of strip 2.');
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(1000);
@@ -172,14 +168,12 @@ test('a hidden tag is named while the camera is on, and no result is computed', 
 });
 
 test('the page says so if a film shows no tag', async () => {
-  await openBrowserWithCamera(join(renderFilm('none', 640, 1, 0, 1, 2, 3, 4), 'film.y4m'));
-  const page = await openRoom();
+  const page = await openRoomWithFilm(renderFilm('none', 640, 1, 0, 1, 2, 3, 4));
   await switchCameraOn(page, 'No tag of the sheet is seen');
 });
 
 test('if there is no camera, or the browser may not use it, the page offers to open a film', async () => {
-  await openBrowserWithCamera(null);
-  const page = await openRoom();
+  const page = await openRoomWithFilm(null);
   await page.getByRole('button', { name: 'Camera' }).click();
   await waitForMessage(page, 'said', /This machine has no camera|not allowed to use the camera/);
   await page.evaluate(() => (navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('no', 'NotAllowedError'))));
@@ -188,8 +182,7 @@ test('if there is no camera, or the browser may not use it, the page offers to o
 });
 
 test('Stop ends the protocol and stops the robot; leaving the room also does so, and switches the camera off', async () => {
-  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
-  const page = await openRoom();
+  const page = await openRoomWithFilm(walkFolder);
   await startDriving(page, ['walk', 'left'], 20);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await page.keyboard.press('Escape');
@@ -206,16 +199,10 @@ test('Stop ends the protocol and stops the robot; leaving the room also does so,
 });
 
 test('a board whose link is cut is no longer driven, the room reports it, and the recorded cycles are measured', async () => {
-  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
-  const page = await openRoom({ acceptDownloads: true });
+  const page = await openRoomWithFilm(walkFolder);
   await page.evaluate(installFakeSerial);
   // For a robot at a Bluetooth module the page does not open the dialog of the first connection.
-  await page.evaluate(() => Object.assign(window, {
-    flashedRobot: 'paper',
-    boardKeepsRunning: true,
-    bluetoothService: '00001101-0000-1000-8000-00805f9b34fb',
-  }));
-  await page.locator('#connect').click();
+  await connect(page, { flashedRobot: 'paper', boardKeepsRunning: true, bluetoothService: '00001101-0000-1000-8000-00805f9b34fb' });
   await page.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
   // At the start of the film the robot is near the end of the sheet, and the page would first drive it back.
   await startDriving(page, ['walk', 'left'], 8, 2500);
@@ -223,32 +210,30 @@ test('a board whose link is cut is no longer driven, the room reports it, and th
   await page.waitForTimeout(6000);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
-  assertNearTruth(JSON.parse(await download(page, 'json')).gaits[0]);
+  assertNearTruth(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
   assert.ok(!/left/.test(await page.evaluate(() => window.receivedText)), 'no further gait was sent');
   assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'nor to the simulated board that follows');
 });
 
 test('the printed sheet equals that of lizard measure sheet, for both paper sizes', async () => {
-  await openBrowserWithCamera(null);
-  const page = await openRoom({ acceptDownloads: true });
+  const page = await openRoomWithFilm(null);
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
     await page.locator('#measure-paper').selectOption(name);
-    const [downloaded] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Print the sheet' }).click()]);
+    const { bytes } = await download(page, page.getByRole('button', { name: 'Print the sheet' }));
     const file = join(folder, `${paper}.pdf`);
     execFileSync(LIZARD, ['measure', 'sheet', '--paper', paper, '-o', file]);
-    assert.deepEqual(readFileSync(await downloaded.path()), readFileSync(file));
+    assert.deepEqual(bytes, readFileSync(file));
   }
 });
 
 test('a worker that cannot be loaded is reported, and the next press loads it', async () => {
-  await openBrowserWithCamera(null);
-  const page = await openRoom({ acceptDownloads: true });
+  const page = await openRoomWithFilm(null);
   const previousCount = complaints.length;
   await page.route(/assets\/worker-/, (route) => route.abort());
   await page.getByRole('button', { name: 'Print the sheet' }).click();
   await waitForMessage(page, 'said', /^the worker could not be loaded/);
   await page.unroute(/assets\/worker-/);
-  await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Print the sheet' }).click()]);
+  await download(page, page.getByRole('button', { name: 'Print the sheet' }));
   // The browser also reports the file that was not loaded, as expected.
   for (const complaint of complaints.splice(previousCount)) assert.match(complaint, /Failed to load|worker/i);
 });

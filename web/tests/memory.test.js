@@ -1,12 +1,11 @@
 // A page that stays open for hours: robots and gaits that were tried, and rooms that were visited, leak no memory.
 import assert from 'node:assert/strict';
-import { after, afterEach, test } from 'node:test';
+import { test } from 'node:test';
 
-import { address, closeBrowser, complaints, openBrowser, openPage, closePages } from './browser.js';
+import { address, complaints, openPage, useBrowser } from './browser.js';
 import { readPageFile, memory, Robot } from './wasm.js';
 
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const toml = await readPageFile('robot.toml', 'utf8');
 
@@ -68,7 +67,6 @@ const SECONDS_IN_ROOM = Number(process.env.STAY ?? 8);
 const ALLOWED_BYTES = 2_000_000;
 
 test('while a robot walks, a second round through the rooms takes no more memory than the first', async (t) => {
-  await openBrowser();
   const page = await openPage({ reducedMotion: 'no-preference' });
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   const devTools = await page.context().newCDPSession(page);

@@ -1,63 +1,42 @@
 // A page that was opened once works without a network, is updated as a whole, and contacts no other server.
 import assert from 'node:assert/strict';
-import { cp, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
+import { cp, readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { DIST, TIMEOUT_MS, address, advance, openBlank, closeBrowser, complaints, openBrowser, serve, closePages, waitUntil, withTimeout } from './browser.js';
+import { DIST, address, advance, openBlank, complaints, waitUntil, repeatUntil, serveInTest, stopServer, useBrowser, chooseRobot, openStored } from './browser.js';
+import { makeFolder } from './folder.js';
 
-let folder;
-const servers = [];
-
-before(async () => {
-  await openBrowser();
-  folder = await mkdtemp(join(tmpdir(), 'lizard-page-'));
-});
-afterEach(async () => {
-  await closePages();
-  for (const server of servers.splice(0)) {
-    server.closeAllConnections();
-    server.close();
-  }
-});
-after(async () => {
-  await closeBrowser();
-  if (folder) await rm(folder, { recursive: true });
-});
+useBrowser();
 
 /** Starts a web server for a copy of the page. */
-async function serveCopy(name, requestedPaths = []) {
-  const copyFolder = join(folder, name);
+async function serveCopy() {
+  const copyFolder = await makeFolder();
   await cp(DIST, copyFolder, { recursive: true });
-  const server = await serve(copyFolder, requestedPaths);
-  servers.push(server);
-  return { copyFolder, server, requestedPaths };
+  const requestedPaths = [];
+  return { copyFolder, server: await serveInTest(copyFolder, requestedPaths), requestedPaths };
 }
 
-const openWithServiceWorkers = () => openBlank({ serviceWorkers: 'allow' });
 const waitUntilStarted = (page) => page.waitForFunction(() => window.lizard);
 
-/** Waits until the service worker has stored the page and answers its requests. */
-async function waitUntilStored(page) {
-  await waitUntilStarted(page);
-  await waitUntil(page, async () =>
-    (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
+/** Makes a newer page of a copy: its heading differs. Returns the index.html of the older page. */
+async function makeNewer(copyFolder) {
+  const indexHtml = await readFile(join(copyFolder, 'index.html'), 'utf8');
+  assert.ok(indexHtml.includes('>lizard</a>'));
+  await writeFile(join(copyFolder, 'index.html'), indexHtml.replace('>lizard</a>', '>lizard, newer</a>'));
+  writeServiceWorker(copyFolder);
+  return indexHtml;
 }
 
 test('once opened, the page works without a server, with any of its robots', async () => {
-  const { server } = await serveCopy('offline');
-  const page = await openWithServiceWorkers();
-  await page.goto(address(server));
-  await waitUntilStored(page);
-  server.closeAllConnections();
-  await withTimeout('the server to close', new Promise((resolve) => server.close(resolve)));
+  const { server } = await serveCopy();
+  const page = await openStored(server);
+  await stopServer(server);
   await page.reload();
   await waitUntilStarted(page);
-  await page.locator('#robot').selectOption('large');
-  await page.waitForFunction(() => window.lizard.file === 'large');
+  await chooseRobot(page, 'large');
   await advance(page, 3000);
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 3000);
@@ -66,16 +45,11 @@ test('once opened, the page works without a server, with any of its robots', asy
 });
 
 test('a newer page is offered, loaded as a whole on request, and replaces the older one', async () => {
-  const { copyFolder, server } = await serveCopy('newer');
-  const page = await openWithServiceWorkers();
-  await page.goto(address(server));
-  await waitUntilStored(page);
+  const { copyFolder, server } = await serveCopy();
+  const page = await openStored(server);
   const readCacheNames = () => page.evaluate(() => window.caches.keys());
   const [firstCache] = await readCacheNames();
-  const indexHtml = await readFile(join(copyFolder, 'index.html'), 'utf8');
-  assert.ok(indexHtml.includes('>lizard</a>'));
-  await writeFile(join(copyFolder, 'index.html'), indexHtml.replace('>lizard</a>', '>lizard, newer</a>'));
-  writeServiceWorker(copyFolder);
+  await makeNewer(copyFolder);
   await page.reload();
   await waitUntilStarted(page);
   assert.equal(await page.locator('h1').innerText(), 'lizard', 'nothing changes without the user');
@@ -87,14 +61,10 @@ test('a newer page is offered, loaded as a whole on request, and replaces the ol
 });
 
 test('a new page with a missing file is rejected, and the stored one stays in use', async () => {
-  const { copyFolder, server, requestedPaths } = await serveCopy('incomplete');
-  const page = await openWithServiceWorkers();
-  await page.goto(address(server));
-  await waitUntilStored(page);
+  const { copyFolder, server, requestedPaths } = await serveCopy();
+  const page = await openStored(server);
   const previousCaches = await page.evaluate(() => window.caches.keys());
-  const indexHtml = await readFile(join(copyFolder, 'index.html'), 'utf8');
-  await writeFile(join(copyFolder, 'index.html'), indexHtml.replace('>lizard</a>', '>lizard, newer</a>'));
-  writeServiceWorker(copyFolder);
+  const indexHtml = await makeNewer(copyFolder);
   // A half-finished update of the server: the list is new, the page is not.
   await writeFile(join(copyFolder, 'index.html'), indexHtml);
   requestedPaths.length = 0;
@@ -104,8 +74,7 @@ test('a new page with a missing file is rejected, and the stored one stays in us
     const registration = await navigator.serviceWorker.ready;
     return !registration.installing && !registration.waiting;
   });
-  for (let ms = 0; ms < TIMEOUT_MS && !requestedPaths.includes('/index.html'); ms += 100) await new Promise((resolve) => setTimeout(resolve, 100));
-  assert.ok(requestedPaths.includes('/index.html'), 'the worker has requested the page');
+  await repeatUntil('the worker requests the page', async () => requestedPaths.includes('/index.html'), () => page.waitForTimeout(100));
   assert.equal(await page.locator('#fresh').isVisible(), false);
   assert.ok((await page.evaluate(() => window.caches.keys())).includes(previousCaches[0]));
   server.closeAllConnections();
@@ -114,8 +83,7 @@ test('a new page with a missing file is rejected, and the stored one stays in us
 });
 
 test('the first load is below 500 KB compressed, and nothing is requested from another origin', async () => {
-  const requestedPaths = [];
-  const { server } = await serveCopy('size', requestedPaths);
+  const { server, requestedPaths } = await serveCopy();
   const page = await openBlank();
   const foreignUrls = [];
   page.on('request', (request) => {

@@ -1,13 +1,11 @@
 // The CPU time of a frame. Real time depends on the machine, so this measures the CPU time of the page's thread,
 // while the test's clock makes the page draw sixty frames a second.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { closeBrowser, complaints, openBrowser, openPage, closePages, withTimeout } from './browser.js';
+import { complaints, openPage, withTimeout, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Time from one frame to the next, ms. */
 const FRAME_MS = 1000 / 60;

@@ -1,30 +1,26 @@
 // While another program installs packages, `make web` waits for it, but not forever.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { chmod, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
+import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { test } from 'node:test';
+
+import { makeFolder } from './folder.js';
 
 const SCRIPT = new URL('../../scripts/packages.sh', import.meta.url).pathname;
 
 /** Runs update_lists of scripts/packages.sh with an apt-get that fails `failureCount` times with a message. */
 async function updateLists(failureCount, message, waitSeconds) {
-  const folder = await mkdtemp(join(tmpdir(), 'lizard-apt-'));
-  try {
-    const aptScript = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${failureCount} ] || exit 0\necho '${message}'\nexit 100\n`;
-    await writeFile(join(folder, 'n'), '0\n');
-    await writeFile(join(folder, 'apt-get'), aptScript);
-    await chmod(join(folder, 'apt-get'), 0o755);
-    const { status, stdout } = spawnSync('bash', ['-c', `set -euo pipefail; . ${SCRIPT}; as_root() { "$@"; }; update_lists`], {
-      env: { ...process.env, PATH: `${folder}:${process.env.PATH}`, LOCK_WAIT: String(waitSeconds) },
-      encoding: 'utf8',
-      timeout: 60_000,
-    });
-    return { status, stdout, tryCount: Number(await readFile(join(folder, 'n'), 'utf8')) };
-  } finally {
-    await rm(folder, { recursive: true });
-  }
+  const folder = await makeFolder();
+  const aptScript = `#!/bin/sh\nn=$(cat ${folder}/n)\necho $((n + 1)) > ${folder}/n\n[ $n -lt ${failureCount} ] || exit 0\necho '${message}'\nexit 100\n`;
+  await writeFile(join(folder, 'n'), '0\n');
+  await writeFile(join(folder, 'apt-get'), aptScript, { mode: 0o755 });
+  const { status, stdout } = spawnSync('bash', ['-c', `set -euo pipefail; . ${SCRIPT}; as_root() { "$@"; }; update_lists`], {
+    env: { ...process.env, PATH: `${folder}:${process.env.PATH}`, LOCK_WAIT: String(waitSeconds) },
+    encoding: 'utf8',
+    timeout: 60_000,
+  });
+  return { status, stdout, tryCount: Number(await readFile(join(folder, 'n'), 'utf8')) };
 }
 
 const LOCK_MESSAGE = 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 4711 (apt-get)';

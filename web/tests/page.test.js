@@ -1,15 +1,13 @@
 // The page in a real browser, used as a user would use it.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { advance, assertStops, closeBrowser, closePages, complaints, openBrowser, openStanding, openPage, text, sendLine, unfold } from './browser.js';
-import { installFakeSerial } from './fake-serial.js';
+import { openWithBoard } from './board.js';
+import { advance, assertStops, complaints, openStanding, openPage, text, sendLine, unfold, useBrowser, chooseRobot, waitForLength, typeLength } from './browser.js';
 import { hexOf, imageOf } from './image.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const gaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
 
@@ -120,20 +118,15 @@ test('changed lengths change the gaits', async () => {
   const hash = await page.evaluate(() => window.lizard.description.hash);
   await unfold(page, '#lengths-panel');
   // Shorter legs make shorter steps.
-  const crank = page.locator('input[name="leg.crank"]');
-  await crank.fill('35');
-  await crank.press('Enter');
-  const waitForCrank = (value) => page.waitForFunction((value) => window.lizard.description.lengths.find(({ key }) => key === 'leg.crank').value === value, value);
-  await waitForCrank(35);
+  const crank = await typeLength(page, 'leg.crank', 35);
+  await waitForLength(page, 'leg.crank', 35);
   assert.equal(await page.locator('input[name="leg.follower"]').inputValue(), '35', 'the paired length follows');
   await advance(page, 2500);
   const { predicted, measured } = await runGait(page, 'walk');
   assertNear(predicted.forward, (previousPrediction.forward * 35) / 45, 0.1, 'shorter steps');
   assertNear(measured.forward, predicted.forward, 0.03, 'mm ahead in a cycle');
 
-  const coupler = page.locator('input[name="links.l2"]');
-  await coupler.fill('15');
-  await coupler.press('Enter');
+  const coupler = await typeLength(page, 'links.l2', 15);
   const refusal = page.locator('#lengths-refusal');
   await refusal.waitFor();
   assert.match(await refusal.innerText(), /^15 mm is too short: head coupler, (left|right) is 15 mm, which is short beside the rest of its loop/);
@@ -142,7 +135,7 @@ test('changed lengths change the gaits', async () => {
   assert.equal((await displacementsOf(page, 'walk')).predicted.forward, predicted.forward, 'the previous robot stays');
 
   await page.locator('#lengths-reset').click();
-  await waitForCrank(45);
+  await waitForLength(page, 'leg.crank', 45);
   assert.equal(await page.evaluate(() => window.lizard.description.hash), hash);
   assert.equal(await crank.inputValue(), '45');
 });
@@ -254,11 +247,8 @@ test('an invalid HEX file is refused before anything is written', async () => {
 });
 
 test('a board by Web Serial is driven, mirrored, calibrated and written', async () => {
-  const page = await openPage({}, installFakeSerial);
+  const page = await openWithBoard('robot', 4000);
   const runFor = (ms) => page.clock.runFor(ms);
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
-  await runFor(4000);
   assert.match(await text(page, '#where'), /^on a board on USB, robot paper/);
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
   await gaitButton(page, 'walk').click();
@@ -276,10 +266,7 @@ test('a board by Web Serial is driven, mirrored, calibrated and written', async 
 });
 
 test('unplugging the board is reported, and the simulation continues', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
-  await page.clock.runFor(4000);
+  const page = await openWithBoard('robot', 4000);
   await page.evaluate(() => window.unplug());
   await page.locator('#problems', { hasText: 'The board is gone: The device has been lost.' }).waitFor();
   await page.clock.runFor(2000);
@@ -305,21 +292,17 @@ test('pads that grip more in one direction change the prediction', async () => {
   assert.ok(Math.abs(measured.forward - predicted.forward) < 1.5, `${measured.forward} ${predicted.forward}`);
 });
 
-/** Sets a slider by the keyboard to a number of steps from its right end. */
-async function setFromRight(page, label, steps) {
+async function setSlider(page, label, value) {
   const slider = page.getByLabel(label);
-  await slider.focus();
-  await slider.press('End');
-  for (let n = 0; n < steps; n++) await slider.press('ArrowLeft');
-  return slider.getAttribute('aria-valuetext');
+  await slider.fill(`${value}`);
+  await slider.dispatchEvent('change');
 }
 
 test('weak springs shorten the walk as the contact model predicts', async () => {
   const page = await openStanding();
   // The contact model's own answer, without the loss by a dead band.
   await page.locator('#servos').selectOption('ideal');
-  await page.locator('#robot').selectOption('paper');
-  await page.waitForFunction(() => window.lizard.file === 'paper');
+  await chooseRobot(page, 'paper');
   await advance(page, 2500);
   const rigidMm = (await runGait(page, 'walk')).measured.forward;
   assert.equal(await page.locator('.sprung').first().isVisible(), false, 'rigid legs do not lag');
@@ -328,11 +311,9 @@ test('weak springs shorten the walk as the contact model predicts', async () => 
   const rowOf = (name) => twin.split('\n').find((line) => line.startsWith(`| ${name}`)).split('|').slice(2).map(Number);
   const [pulls, walkedMm, lagsDeg] = ['pull in a slotted strut', '`walk`', 'lag in `walk`'].map(rowOf);
   await page.getByLabel('Driven by').selectOption('strut');
-  const slider = page.getByLabel('Pull in the strut');
   for (const pull of [0.5, 1]) {
     const [expectedMm, expectedLagDeg] = [walkedMm, lagsDeg].map((values) => values[pulls.indexOf(pull)]);
-    await slider.fill(`${pull}`);
-    await slider.dispatchEvent('change');
+    await setSlider(page, 'Pull in the strut', pull);
     await advance(page, 4000);
     const { predicted, measured } = await displacementsOf(page, 'walk');
     assertNear(predicted.forward, expectedMm, 0.01, 'mm predicted, as in docs/twin.md');
@@ -347,7 +328,7 @@ test('weak springs shorten the walk as the contact model predicts', async () => 
   }
   // The legs of a heavy robot lag more.
   const lightPrediction = (await displacementsOf(page, 'walk')).predicted;
-  await setFromRight(page, 'Mass', 0);
+  await page.getByLabel('Mass').press('End');
   const heavyPrediction = (await displacementsOf(page, 'walk')).predicted;
   assert.ok(heavyPrediction.lag > 1.2 * lightPrediction.lag, `${heavyPrediction.lag} and ${lightPrediction.lag} deg`);
   await page.locator('#floor-reset').click();
@@ -363,17 +344,12 @@ test('a foot that is too long shortens the walk as the contact model predicts, b
   await page.locator('#servos').selectOption('ideal');
   await advance(page, 2500);
   const levelMm = (await runGait(page, 'walk')).measured.forward;
-  const setSlider = async (label, value) => {
-    const slider = page.getByLabel(label);
-    await slider.fill(`${value}`);
-    await slider.dispatchEvent('change');
-  };
-  await setSlider('Front left foot too long', 1);
+  await setSlider(page, 'Front left foot too long', 1);
   await advance(page, 4000);
   const softFeet = await displacementsOf(page, 'walk');
   assertNear(softFeet.measured.forward, softFeet.predicted.forward, 0.03, 'mm ahead on soft feet');
   assert.ok(softFeet.measured.forward > 0.9 * levelMm, `${softFeet.measured.forward} of ${levelMm} mm`);
-  await setSlider('Stiffness of a foot', 3.3);
+  await setSlider(page, 'Stiffness of a foot', 3.3);
   await advance(page, 4000);
   const stiffFeet = await displacementsOf(page, 'walk');
   assert.ok(Math.abs(stiffFeet.measured.forward - stiffFeet.predicted.forward) < 1.5, JSON.stringify(stiffFeet));
@@ -404,6 +380,4 @@ test('at half the pace the last cycle is as long as predicted', async () => {
   assert.ok(Math.abs(cycleMm / predictedMm - 1) < 0.05, `${cycleMm} mm, predicted ${predictedMm}`);
 });
 
-test('the browser reported no error or warning', () => {
-  assert.deepEqual(complaints, []);
-});
+test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

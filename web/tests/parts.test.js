@@ -2,34 +2,32 @@
 // in the robot's pose, and loaded only when their panel is opened.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { mkdtemp, readFile, readdir, rm, writeFile } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { readFile, readdir, writeFile } from 'node:fs/promises';
+import { join, relative, resolve } from 'node:path';
+import { before, test } from 'node:test';
 import { promisify } from 'node:util';
 import { gzipSync } from 'node:zlib';
 
 import { unzipSync } from 'fflate';
 
-import { advance, openBlank, address, closeBrowser, complaints, openBrowser, openStanding, closePages, sendLine, unfold, withTimeout } from './browser.js';
+import { advance, openBlank, address, complaints, openStanding, sendLine, unfold, withTimeout, repeatUntil, useBrowser, typeLength, download } from './browser.js';
+import { makeFolder } from './folder.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 /** Limit of the page's first load, compressed. */
 const MAX_FIRST_LOAD_BYTES = 500_000;
 
-let folder;
+const folder = await makeFolder();
+const runLizard = (command, ...args) => withTimeout(`lizard ${command}`, promisify(execFile)(resolve(ROOT, process.env.LIZARD), [command, ...args]));
 
-before(openBrowser);
-before(async () => {
-  folder = await mkdtemp(join(tmpdir(), 'parts-'));
-  const partsRun = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', folder, '--robot', join(ROOT, 'robot.toml')]);
-  await withTimeout('lizard parts', partsRun);
-});
-afterEach(closePages);
-after(async () => {
-  await rm(folder, { recursive: true, force: true });
-  await closeBrowser();
-});
+useBrowser();
+before(() => runLizard('parts', folder, '--robot', join(ROOT, 'robot.toml')));
+
+/** Returns the paths of the files in a folder, relative to the folder. */
+async function pathsIn(root) {
+  const entries = await readdir(root, { recursive: true, withFileTypes: true });
+  return entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => relative(root, join(parentPath, name)));
+}
 
 const messageOf = (page) => page.locator('#parts-said');
 
@@ -56,20 +54,16 @@ async function lookFromAbove(page) {
 test('an unprintable length is reported at once with the nearest printable one, as by lizard parts', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
-  const length = page.locator('#lengths input[name="leg.crank"]');
-  await length.fill('46');
-  await length.press('Enter');
+  const length = await typeLength(page, 'leg.crank', 46);
   await page.locator('#fit-said', { hasText: /^The parts fit: no two come nearer than \d\.\d\d mm\.$/ }).waitFor();
-  await length.fill('52');
-  await length.press('Enter');
+  await typeLength(page, 'leg.crank', 52);
   await page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ }).waitFor();
   const useButton = page.locator('#fit-use');
   await useButton.waitFor();
   const nearestMm = Number(/ ([\d.]+)$/.exec(await useButton.innerText())[1]);
   assert.ok(nearestMm > 46 && nearestMm < 52, `${nearestMm} mm`);
 
-  const trialFolder = await mkdtemp(join(tmpdir(), 'tried-'));
-  after(() => rm(trialFolder, { recursive: true, force: true }));
+  const trialFolder = await makeFolder();
   // The fit of the whole robot is proved before the parts of a corner are made.
   const makeParts = async (mm) => {
     const path = join(trialFolder, 'robot.toml');
@@ -78,8 +72,7 @@ test('an unprintable length is reported at once with the nearest printable one, 
       return robot.constructor.lengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
     }, mm);
     await writeFile(path, toml);
-    const partsRun = promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(trialFolder, 'parts'), '--corner', '--robot', path]);
-    return withTimeout('lizard parts', partsRun.then(() => 'made', ({ stderr }) => stderr));
+    return runLizard('parts', join(trialFolder, 'parts'), '--corner', '--robot', path).then(() => 'made', ({ stderr }) => stderr);
   };
   assert.equal(await makeParts(nearestMm), 'made');
   assert.match(await makeParts(nearestMm + 0.5), /overlap|may come as near as/);
@@ -139,14 +132,12 @@ test('while a length is dragged, the two parts that collide are red in 3D, and t
   await page.locator('#parts-said', { hasText: `${pair} overlap by ${overlapMm} mm.` }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), previousToml, 'the slider is not released yet');
   // The stop button is red, too. The picture follows the slider after a moment.
-  const waitForRed = async (isRed) => {
-    while ((await countRedPixels()) > restingRedCount + 50 !== isRed) await page.waitForTimeout(200);
-  };
-  await withTimeout('red parts', waitForRed(true));
+  const hasRedParts = async () => (await countRedPixels()) > restingRedCount + 50;
+  await repeatUntil('red parts', hasRedParts, () => page.waitForTimeout(200));
   // At the old length the parts fit again.
   await dragTo(45);
   await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
-  await withTimeout('no red parts', waitForRed(false));
+  await repeatUntil('no red parts', async () => !(await hasRedParts()), () => page.waitForTimeout(200));
 });
 
 test('the files that a changed length affects are listed, and can be downloaded alone', async () => {
@@ -154,18 +145,14 @@ test('the files that a changed length affects are listed, and can be downloaded 
   await unfold(page, '#parts');
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
   assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.constructor.lengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
-  const pendingDownload = page.waitForEvent('download');
-  await page.locator('#parts-changed').click();
-  const savedFile = await pendingDownload;
-  assert.equal(savedFile.suggestedFilename(), 'robot-changed-parts.zip');
-  const archive = unzipSync(await readFile(await savedFile.path()));
-  const changedFolder = await mkdtemp(join(tmpdir(), 'changed-'));
-  after(() => rm(changedFolder, { recursive: true, force: true }));
+  const savedFile = await download(page, page.locator('#parts-changed'));
+  assert.equal(savedFile.name, 'robot-changed-parts.zip');
+  const archive = unzipSync(savedFile.bytes);
+  const changedFolder = await makeFolder();
   const path = join(changedFolder, 'robot.toml');
   await writeFile(path, await page.evaluate(() => window.lizard.toml));
-  await withTimeout('lizard parts', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['parts', join(changedFolder, 'parts'), '--robot', path]));
-  const entries = await readdir(join(changedFolder, 'parts'), { recursive: true, withFileTypes: true });
-  const paths = entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => join(parentPath, name).slice(join(changedFolder, 'parts').length + 1));
+  await runLizard('parts', join(changedFolder, 'parts'), '--robot', path);
+  const paths = await pathsIn(join(changedFolder, 'parts'));
   const isSame = async (name) => {
     const [changedBytes, originalBytes] = await Promise.all([join(changedFolder, 'parts', name), join(folder, name)].map((file) => readFile(file).catch(() => Buffer.alloc(0))));
     return changedBytes.equals(originalBytes);
@@ -199,7 +186,6 @@ test('opening the page loads no parts, and less than 500 KB compressed', async (
 test('the archive has the files of lizard parts, byte for byte', async () => {
   const page = await openStanding();
   await unfold(page, '#parts');
-  const pendingDownload = page.waitForEvent('download');
   // Every message is recorded when it appears, because polling a busy browser would miss some.
   await page.evaluate(() => {
     const box = document.querySelector('#files-said');
@@ -212,20 +198,18 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
       addEventListener.call(this, type, (event) => (box.textContent.startsWith('Making') ? window.delayedReports.push(() => listener(event)) : listener(event)));
     };
   });
-  await page.getByRole('button', { name: 'Download all files' }).click();
-  const savedFile = await pendingDownload;
+  const savedFile = await download(page, page.getByRole('button', { name: 'Download all files' }));
   const progress = await page.evaluate(() => window.shownMessages);
   assert.ok((await page.evaluate(() => window.delayedReports.map((report) => report()).length)) > 10);
   assert.ok(progress.some((text) => /^Proving that no two parts meet: [0-9]+ of [0-9]+\.$/.test(text)), progress.join(' '));
-  assert.equal(savedFile.suggestedFilename(), 'robot-parts.zip');
-  const archive = unzipSync(await readFile(await savedFile.path()));
-  const entries = await readdir(folder, { recursive: true, withFileTypes: true });
-  const paths = entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => join(parentPath, name).slice(folder.length + 1));
+  assert.equal(savedFile.name, 'robot-parts.zip');
+  const archive = unzipSync(savedFile.bytes);
+  const paths = await pathsIn(folder);
   assert.deepEqual(Object.keys(archive).sort(), paths.sort());
   for (const path of paths) assert.ok(Buffer.from(archive[path]).equals(await readFile(join(folder, path))), `${path} differs`);
   assert.ok(paths.length > 100, `${paths.length} files`);
   // The nearest two parts, as `lizard fit` prints them.
-  const { stdout } = await withTimeout('lizard fit', promisify(execFile)(resolve(ROOT, process.env.LIZARD), ['fit', '--robot', join(ROOT, 'robot.toml')]));
+  const { stdout } = await runLizard('fit', '--robot', join(ROOT, 'robot.toml'));
   const leastMm = /no two parts come nearer than ([0-9.]+) mm/.exec(stdout)[1];
   assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${leastMm} mm`));
 });

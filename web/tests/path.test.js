@@ -1,18 +1,17 @@
 // A gesture is drawn: the point of the head or the tail follows the line, and a line out of reach is refused with a
 // valid size.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import {
-  advance, closeBrowser, complaints, openBrowser, overflow, openStanding, closePages, unfold,
-} from './browser.js';
+import { advance, complaints, overflow, openStanding, unfold, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const panelText = (page, id) => page.locator(`#path-${id}`).innerText();
 const waitForValue = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
+/** Waits until the table has the circle that `draw` draws with a radius of 6 mm. */
+const waitForCircle = (page) => page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
+const waitForOtherTable = (page, table) => page.waitForFunction((table) => document.querySelector('#path-table').textContent !== table, table);
 
 async function openPanel(options) {
   const page = await openStanding(options);
@@ -47,7 +46,7 @@ const headPointOf = (page) => page.evaluate(() => window.lizard.last.scene.point
 test('a drawn circle is the path of the head, and is written into robot.toml', async () => {
   const page = await openPanel();
   await draw(page, 6);
-  await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
+  await waitForCircle(page);
   assert.equal(await page.locator('#path-shape').inputValue(), 'own');
   assert.match(await panelText(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
   const neutral = await headPointOf(page);
@@ -86,12 +85,12 @@ test('a shape can be chosen by the keyboard, for the tail as well', async () => 
   const page = await openPanel();
   const previousTable = await panelText(page, 'table');
   await page.locator('#path-end').selectOption('tail');
-  await page.waitForFunction((previousTable) => document.querySelector('#path-table').textContent !== previousTable, previousTable);
+  await waitForOtherTable(page, previousTable);
   assert.match(await panelText(page, 'table'), /\[gait\.gesture\.tail\]/);
   for (const shape of ['circle', 'side', 'nod', 'eight']) {
     const table = await panelText(page, 'table');
     await page.locator('#path-shape').selectOption(shape);
-    await page.waitForFunction((table) => document.querySelector('#path-table').textContent !== table, table);
+    await waitForOtherTable(page, table);
     assert.ok(await page.locator('#path-no').isHidden(), `${shape}: ${await panelText(page, 'refusal')}`);
   }
 });
@@ -109,7 +108,7 @@ test('a finger draws on a phone, and the page does not scroll meanwhile', async 
   const page = await openPanel({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   assert.equal(await page.locator('#path-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
   await draw(page, 6);
-  await page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
+  await waitForCircle(page);
   assert.equal(await overflow(page), 0);
 });
 

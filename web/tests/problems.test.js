@@ -1,13 +1,11 @@
 // A problem is shown where the user looks, and stays until it is solved.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { address, advance, closeBrowser, closePages, complaints, openBrowser, openBlank, openForbidden, openStanding, openPage, text, sendLine, unfold } from './browser.js';
+import { address, advance, complaints, openBlank, openForbidden, openStanding, openPage, text, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const problemsOf = (page) => page.locator('#problems');
 
@@ -25,8 +23,7 @@ test('the message about an unreadable robot file stays while the previous robot 
   assert.ok(await message.isVisible(), 'answers of the robot do not remove the message');
   assert.equal(await page.evaluate(() => window.lizard.file), 'robot');
   await page.unroute('**/files/large.toml');
-  await page.locator('#robot').selectOption('large');
-  await page.waitForFunction(() => window.lizard.file === 'large');
+  await chooseRobot(page, 'large');
   assert.equal(await problemsOf(page).isVisible(), false, 'a readable robot file removes the message');
   // The browser also reports the missing file, as expected.
   complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/404/.test(complaint)));
@@ -38,8 +35,7 @@ test('if the first robot cannot be read, the page says so and accepts another ro
   await page.goto(address());
   await problemsOf(page).getByText('files/robot.toml is not there (404)').waitFor();
   assert.equal(await text(page, '#where'), 'No robot could be read.');
-  await page.locator('#robot').selectOption('paper');
-  await page.waitForFunction(() => window.lizard?.file === 'paper');
+  await chooseRobot(page, 'paper');
   await advance(page, 2500);
   assert.match(await text(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
   assert.equal(await problemsOf(page).isVisible(), false);

@@ -2,17 +2,15 @@
 // width for width, even for a robot that only the page has.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import { loadHex } from '../../tools/judge/src/hex.js';
-import { TIMEOUT_MS, closeBrowser, complaints, openBrowser, openPage, closePages } from './browser.js';
+import { TIMEOUT_MS, complaints, openPage, useBrowser } from './browser.js';
+import { makeFolder } from './folder.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 const ROBOT_FILE = join(ROOT, 'robot.toml');
@@ -34,8 +32,8 @@ const END_MS = 16_011;
 const CYCLE_DEG = 1 / 160;
 
 /** Returns the servo angles of each frame, which `lizard sim` computes from the pulses at the pins. */
-function simulate(toml) {
-  const folder = mkdtempSync(join(tmpdir(), 'lizard-'));
+async function simulate(toml) {
+  const folder = await makeFolder();
   try {
     const scriptPath = join(folder, 'script');
     writeFileSync(scriptPath, SCRIPT.map(([ms, line]) => `${ms} ${line}\n`).join(''));
@@ -51,8 +49,6 @@ function simulate(toml) {
   } catch (error) {
     if (error.code === 'ETIMEDOUT') throw new Error(`timeout after ${TIMEOUT_MS / 1000} s: the end of lizard sim`);
     throw error;
-  } finally {
-    rmSync(folder, { recursive: true, force: true });
   }
 }
 
@@ -112,7 +108,7 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
     },
     [SCRIPT, END_MS],
   );
-  const expected = simulate(toml);
+  const expected = await simulate(toml);
   assert.ok(frames.length > 600, `${frames.length} frames`);
   assert.equal(frames.length, expected.length);
   frames.forEach((angles, frame) =>

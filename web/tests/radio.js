@@ -1,7 +1,9 @@
 // A Bluetooth module in Chromium's own emulation, with a simulated UNO at its serial line. The emulation delivers the
 // bytes that the page writes. It has no notifications, so this file sends the robot's bytes to the page in the event
 // that a notification would cause.
-import { openDevTools, openForbidden, openPage, withTimeout } from './browser.js';
+import { setTimeout as sleep } from 'node:timers/promises';
+
+import { openDevTools, openForbidden, openPage, repeatUntil, withTimeout } from './browser.js';
 
 const uuidOf = (shortId) => `0000${shortId}-0000-1000-8000-00805f9b34fb`;
 export const HM10 = { name: 'HMSoft', service: uuidOf('ffe0'), characteristics: { [uuidOf('ffe1')]: ['notify', 'writeWithoutResponse'] } };
@@ -135,20 +137,14 @@ export class Radio {
   async run(ms) {
     for (let remainingMs = ms; remainingMs > 0; remainingMs -= STEP_MS) {
       await this.page.clock.runFor(STEP_MS);
-      const waitForArrival = async () => {
-        while (this.isInRange && (await this.page.evaluate(() => window.writeCount)) > this.packetLengths.length) await new Promise((resolve) => setTimeout(resolve, 5));
-      };
-      await withTimeout('packets to arrive', waitForArrival());
+      const haveArrived = async () => !this.isInRange || (await this.page.evaluate(() => window.writeCount)) <= this.packetLengths.length;
+      await repeatUntil('packets to arrive', haveArrived, () => sleep(5));
     }
   }
 
   /** Advances the page's clock until `condition` returns true. */
-  async runUntil(waitName, condition) {
-    let isWaiting = true;
-    const advance = async () => {
-      while (isWaiting && !(await condition())) await this.run(STEP_MS);
-    };
-    await withTimeout(waitName, advance()).finally(() => (isWaiting = false));
+  runUntil(waitName, condition) {
+    return repeatUntil(waitName, condition, () => this.run(STEP_MS));
   }
 
   /** Presses the button, and picks the module or cancels. */

@@ -1,13 +1,11 @@
 // The phone as a remote control.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { DIST, address, advance, closeBrowser, complaints, openBrowser, openStanding, closePages } from './browser.js';
+import { DIST, address, advance, complaints, openStanding, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const PHONE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 /** A thumb's reach from its corner of the screen, CSS pixels. */

@@ -1,29 +1,28 @@
 // The robot as text: a mistake is reported with its line, and a file, a drop and a link load the same robot.
 import assert from 'node:assert/strict';
-import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
+import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import jsQR from 'jsqr';
 import { parse } from 'smol-toml';
 
-import { address, closeBrowser, complaints, openBrowser, openPage, openStanding, closePages, unfold, waitUntil } from './browser.js';
+import { address, complaints, openPage, openStanding, unfold, waitUntil, useBrowser, chooseRobot } from './browser.js';
+import { makeFolder } from './folder.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
-let folder;
 
-before(openBrowser);
-before(async () => (folder = await mkdtemp(join(tmpdir(), 'robot-'))));
-afterEach(closePages);
-after(async () => {
-  await rm(folder, { recursive: true, force: true });
-  await closeBrowser();
-});
+useBrowser();
 
 const textBoxOf = (page) => page.locator('#robot-text');
 const tomlOf = (page) => page.evaluate(() => window.lizard.toml);
 const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
+
+/** Types a robot.toml and makes it the page's robot. */
+async function takeText(page, toml) {
+  await textBoxOf(page).fill(toml);
+  await page.locator('#robot-take').click();
+}
 
 async function openTextEditor(options) {
   const page = await openStanding(options);
@@ -37,8 +36,7 @@ test('a text with a mistake is refused with its line, and the previous robot sta
   assert.equal(await textBoxOf(page).inputValue(), firstToml);
   const wrongToml = firstToml.replace('l1 = 30.0', 'l1 = "long"');
   const line = wrongToml.split('\n').findIndex((text) => text.startsWith('l1 = ')) + 1;
-  await textBoxOf(page).fill(wrongToml);
-  await page.locator('#robot-take').click();
+  await takeText(page, wrongToml);
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
   assert.match(await page.locator('#robot-refusal').innerText(), new RegExp(`^robot\\.toml:${line}: links\\.l1`));
   const readSelection = () => textBoxOf(page).evaluate((box) => box.value.slice(box.selectionStart, box.selectionEnd));
@@ -51,8 +49,7 @@ test('a refused gait is explained by its effect on the robot, then by its line',
   const page = await openTextEditor();
   const wrongToml = (await tomlOf(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
   const line = wrongToml.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
-  await textBoxOf(page).fill(wrongToml);
-  await page.locator('#robot-take').click();
+  await takeText(page, wrongToml);
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
   const refusalText = await page.locator('#robot-refusal').innerText();
   assert.match(refusalText, /^in "walk" the (left|right) (front|hind) leg would lock: margin leg_[lr][fh] -?[0-9.]+ is below 0\.300 at phase [0-9.]+ /i);
@@ -105,7 +102,7 @@ test('a file is opened, or dropped anywhere on the page', async () => {
     document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
   }, droppedToml);
   await waitForRobot(page, droppedToml);
-  const pictureFile = join(folder, 'x.toml');
+  const pictureFile = join(await makeFolder(), 'x.toml');
   await writeFile(pictureFile, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 0, 0]));
   await page.locator('#robot-open').setInputFiles(pictureFile);
   await page.getByText('x.toml is not a robot.toml.').waitFor();
@@ -166,8 +163,7 @@ test('a link contains the robot, survives a reload, and is read by a phone from 
   // Another robot removes the code.
   await qrButton.click();
   await page.getByRole('img', { name: 'QR code' }).waitFor();
-  await textBoxOf(page).fill(largeToml.replace('name = "large"', 'name = "other"'));
-  await page.locator('#robot-take').click();
+  await takeText(page, largeToml.replace('name = "large"', 'name = "other"'));
   await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
 });
 
@@ -175,8 +171,7 @@ test('a link drops comments, and keeps everything else', async () => {
   const page = await openTextEditor();
   await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const toml = `# one\n${(await tomlOf(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
-  await textBoxOf(page).fill(toml);
-  await page.locator('#robot-take').click();
+  await takeText(page, toml);
   await waitForRobot(page, toml);
   await page.getByRole('button', { name: 'Copy a link' }).click();
   await page.getByText('The link is copied').waitFor();
@@ -191,8 +186,7 @@ test('after every change the address is that of the shown robot', async () => {
   const firstToml = await tomlOf(page);
   assert.equal(page.url(), `${address()}#room=build`, 'the page\'s own robot is not in the address');
   const changedToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
-  await textBoxOf(page).fill(changedToml);
-  await page.locator('#robot-take').click();
+  await takeText(page, changedToml);
   await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
   // A new browser gets the robot from the address alone.
   const otherPage = await openPage();
@@ -219,8 +213,7 @@ test('a hostile file runs no script', async () => {
   page.on('dialog', (dialog) => dialog.dismiss().then(() => dialogs.push(dialog.message())));
   const hostileGait = '[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n';
   const hostileToml = `${await tomlOf(page)}\n${hostileGait}`;
-  await textBoxOf(page).fill(hostileToml);
-  await page.locator('#robot-take').click();
+  await takeText(page, hostileToml);
   await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostileToml);
   assert.equal(await page.locator('img').count(), 0);
   assert.deepEqual(dialogs, []);
@@ -229,8 +222,7 @@ test('a hostile file runs no script', async () => {
 test('opening a link or another robot stores the user\'s own robot, and a button restores it', async () => {
   const page = await openTextEditor();
   const ownToml = (await tomlOf(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
-  await textBoxOf(page).fill(ownToml);
-  await page.locator('#robot-take').click();
+  await takeText(page, ownToml);
   await waitForRobot(page, ownToml);
   const backButton = page.locator('#problems').getByRole('button', { name: 'Back to my own robot' });
   // A link from somebody else, opened in another tab.
@@ -248,8 +240,7 @@ test('opening a link or another robot stores the user\'s own robot, and a button
   await page.waitForFunction(() => window.lizard?.file === 'large');
   await page.locator('#robot').selectOption({ label: 'paper' });
   await waitForRobot(page, ownToml);
-  await page.locator('#robot').selectOption('large');
-  await page.waitForFunction(() => window.lizard.file === 'large');
+  await chooseRobot(page, 'large');
   await backButton.click();
   await waitForRobot(page, ownToml);
   assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'no stored robot is left');
@@ -262,12 +253,9 @@ test('the user\'s own robots are listed by their names, and each is restored unc
   const list = page.locator('#robot');
   const readNames = () => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
   for (const name of ['anna', 'bert']) {
-    await list.selectOption('large');
-    await page.waitForFunction(() => window.lizard.file === 'large');
-    await list.selectOption('robot');
-    await page.waitForFunction(() => window.lizard.file === 'robot');
-    await textBoxOf(page).fill(tomlNamed(name));
-    await page.locator('#robot-take').click();
+    await chooseRobot(page, 'large');
+    await chooseRobot(page, 'robot');
+    await takeText(page, tomlNamed(name));
     await waitForRobot(page, tomlNamed(name));
   }
   assert.deepEqual(await readNames(), ['anna']);

@@ -1,16 +1,13 @@
 // The rooms of the page: each has an address, fits its screen, keeps Stop within reach, and renders only while it
 // is open.
 import assert from 'node:assert/strict';
-import { createRequire } from 'node:module';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { address, closeBrowser, complaints, openBrowser, openPage, overflow, openStanding, closePages, unfold } from './browser.js';
+import { findViolations } from './axe.js';
+import { address, complaints, openPage, overflow, openStanding, unfold, useBrowser, typeLength } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
-const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 const ROOMS = ['start', 'drive', 'gaits', 'build', 'board', 'measure', 'learn'];
 /** The main element of each room, which a phone shows without scrolling. */
 const MAIN_ELEMENTS = { start: '.doors', drive: '#speed', gaits: '#gait-try', build: '#sketch', board: '#setup-open', measure: '#measure-camera', learn: '#learn-title' };
@@ -34,7 +31,6 @@ for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n %
   const { width, height } = options.viewport;
   test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and Stop, and has no violations for axe-core`, async () => {
     const page = await openStanding({ ...options, bypassCSP: true });
-    await page.addScriptTag({ path: AXE });
     for (const room of ROOMS) {
       await page.evaluate((room) => (location.hash = `room=${room}`), room);
       await waitForRoom(page, room);
@@ -48,8 +44,7 @@ for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n %
       // Nothing covers Stop at the bottom of the page either.
       await page.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
       assert.equal(await page.evaluate(([x, y]) => document.elementFromPoint(x, y).className, [stop.left + stop.width / 2, stop.top + stop.height / 2]), 'stop', room);
-      const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-      assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join('\n')}`), [], room);
+      assert.deepEqual(await findViolations(page), [], room);
     }
   });
 }
@@ -80,14 +75,12 @@ test('an address opens its room, with the robot that it names, and the tabs, the
 test('a robot that was changed stays when the browser goes back a room', async () => {
   const page = await openPage();
   await linkTo(page, 'build').click();
-  await page.locator('#lengths input[name="links.l12"]').fill('46');
-  await page.keyboard.press('Enter');
+  await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
   const firstHash = await page.evaluate(() => location.hash);
   await linkTo(page, 'drive').click();
   await waitForRoom(page, 'drive');
-  await page.locator('#lengths input[name="links.l12"]').fill('47');
-  await page.keyboard.press('Enter');
+  await typeLength(page, 'links.l12', 47);
   await page.waitForFunction((firstHash) => location.hash.startsWith('#room=build&robot=') && location.hash !== firstHash, firstHash);
   const toml = await page.evaluate(() => window.lizard.toml);
   await page.goBack();

@@ -1,18 +1,17 @@
 // Routines: a drive is recorded as steps, the steps are a view of robot.toml, and the robot repeats them.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { openWithBoard, runUntil } from './board.js';
-import {
-  address, advance, closeBrowser, closePages, complaints, openBrowser, openStanding, text, unfold,
-} from './browser.js';
+import { openWithBoard, runUntil, reconnect, waitForText } from './board.js';
+import { address, advance, complaints, openStanding, text, unfold, useBrowser, hidePage } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
+const gaitOf = (page) => page.evaluate(() => window.lizard.gait);
+/** Waits until the robot on a board does a gait. */
+const waitForBoardGait = (page, name) => runUntil(page, `the robot does ${name}`, async () => (await gaitOf(page)) === name, 20);
 const tomlOf = (page) => page.evaluate(() => window.lizard.toml);
 const gaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
 const stepsOf = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
@@ -40,15 +39,19 @@ async function putRoutine(page, steps, name = 'patrol') {
   }, [name, steps]);
 }
 
-/** Opens the panel with a routine, for a robot that stands. */
-async function openRoutine(routine = PATROL, options = {}) {
-  const page = await openStanding(options);
+/** Unfolds the panel, and gives the robot of the page a routine. */
+async function showRoutine(page, routine) {
   await unfold(page, '#routines');
   if (!routine) return page;
   await putRoutine(page, routine);
   await waitForSteps(page, routine);
   return page;
 }
+
+/** Opens the panel with a routine, for a robot that stands. */
+const openRoutine = async (routine = PATROL, options = {}) => showRoutine(await openStanding(options), routine);
+/** Opens the panel with a routine that the connected board does not have. */
+const openBoardWithRoutine = async (routine) => showRoutine(await openWithBoard('robot', 8000), routine);
 
 /** Runs the simulation for some seconds of its own time. */
 async function runSeconds(page, seconds) {
@@ -105,7 +108,7 @@ test('a drive is recorded by the robot\'s motions, and its replay ends where pre
   assert.equal(await gaitButton(page, 'patrol').getAttribute('aria-pressed'), 'true');
   await advance(page, seconds * 1000 + 200);
   await page.locator('#log div', { hasText: '# done' }).waitFor();
-  assert.equal(await page.evaluate(() => window.lizard.gait), 'stop');
+  assert.equal(await gaitOf(page), 'stop');
   const { y, heading } = await readPlace();
   assert.ok(Math.abs(y - forwardMm) < 0.03 * forwardMm + 1, `${y} mm ahead, predicted ${forwardMm}`);
   assert.ok(Math.abs(heading - turnedDeg) < 0.03 * turnedDeg + 1, `turned by ${heading} deg, predicted ${turnedDeg}`);
@@ -152,13 +155,12 @@ test('the drive of a board is recorded by the board\'s own phase, even if its li
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await press(page, 'Record a drive');
-  const waitForGait = (name) => runUntil(page, `the robot does ${name}`, async () => (await page.evaluate(() => window.lizard.gait)) === name, 20);
   await gaitButton(page, 'walk').click();
-  await waitForGait('walk');
+  await waitForBoardGait(page, 'walk');
   // A walk begins with 0.25 s to its first pose, so less than four cycles have passed.
   await page.clock.runFor(4100);
   await gaitButton(page, 'back').click();
-  await waitForGait('back');
+  await waitForBoardGait(page, 'back');
   await page.clock.runFor(2600);
   // The link is lost: the robot stops by itself after 0.9 s.
   await page.evaluate(() => {
@@ -168,7 +170,7 @@ test('the drive of a board is recorded by the board\'s own phase, even if its li
     setTimeout(() => Object.assign(board, { send, onByte }), 8000);
   });
   await page.clock.runFor(8500);
-  await waitForGait('stop');
+  await waitForBoardGait(page, 'stop');
   await page.clock.runFor(500);
   await press(page, 'Stop recording');
   assert.match(await text(page, '#routine-said'), /^Recorded: walk 3, back [23]$/);
@@ -229,6 +231,7 @@ test('while a step is dragged the new path is drawn, and the text changes when t
   const page = await openRoutine(['walk 3', 'left 6', 'walk 1']);
   await waitForPrediction(page);
   const [previousToml, firstTrack] = [await tomlOf(page), await trackPathOf(page)];
+  const waitForOtherTrack = () => page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
   const gripOf = (number) => page.locator('#routine-steps .grip').nth(number - 1);
   const middleOf = async (number) => {
     await gripOf(number).scrollIntoViewIfNeeded();
@@ -238,7 +241,7 @@ test('while a step is dragged the new path is drawn, and the text changes when t
   await page.mouse.move(...(await middleOf(1)));
   await page.mouse.down();
   await page.mouse.move(...(await middleOf(3)), { steps: 5 });
-  await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
+  await waitForOtherTrack();
   assert.deepEqual(await stepsOf(page), ['left 6', 'walk 1', 'walk 3'], 'the order after a release');
   assert.equal(await tomlOf(page), previousToml);
   await page.mouse.move(...(await middleOf(1)), { steps: 5 });
@@ -250,7 +253,7 @@ test('while a step is dragged the new path is drawn, and the text changes when t
   await page.mouse.move(...(await middleOf(2)), { steps: 5 });
   await page.mouse.up();
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3", "walk 1"]'));
-  await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
+  await waitForOtherTrack();
 });
 
 test('a finger drags a step, too', async () => {
@@ -325,27 +328,23 @@ test('a step that waits forever, or a large number of steps, does not block the 
 });
 
 test('a routine is written to a board, started by its name, and reports its end', async () => {
-  const page = await openWithBoard('robot', 8000);
-  await unfold(page, '#routines');
-  await putRoutine(page, ['walk 2', 'rest 2 s', 'left 1']);
-  await waitForSteps(page, ['walk 2', 'rest 2 s', 'left 1']);
+  const page = await openBoardWithRoutine(['walk 2', 'rest 2 s', 'left 1']);
   // Until it is written, the board has the robot without it.
   await press(page, 'Start it');
   await runUntil(page, 'the command is refused', async () => (await text(page, '#drive-said')) === 'patrol: unknown command, send help for the list');
   await press(page, 'Write it to the board');
-  await runUntil(page, 'the robot is written', async () => /^written and verified in [\d.]+ s$/.test(await text(page, '#routine-said')));
+  await waitForText(page, '#routine-said', /^written and verified in [\d.]+ s$/);
   await page.clock.runFor(6000);
   await page.evaluate(() => (window.receivedText = ''));
   await gaitButton(page, 'patrol').click();
-  const readGait = () => page.evaluate(() => window.lizard.gait);
-  await runUntil(page, 'the robot patrols', async () => (await readGait()) === 'patrol', 20);
+  await waitForBoardGait(page, 'patrol');
   // While the robot rests, the routine is still under way, and the page keeps sending lines.
   await page.clock.runFor(3500);
-  assert.equal(await readGait(), 'patrol');
+  assert.equal(await gaitOf(page), 'patrol');
   assert.ok(!(await page.evaluate(() => window.receivedText)).includes('deadman 0'));
   await runUntil(page, 'the routine is done', async () => (await page.locator('#log div', { hasText: /^# done$/ }).count()) === 1, 20);
   await page.clock.runFor(600);
-  assert.equal(await readGait(), 'stop');
+  assert.equal(await gaitOf(page), 'stop');
   assert.match(await page.evaluate(() => window.receivedText), /deadman 901\n[^]*patrol\n[^]*deadman 0\n/);
 });
 
@@ -356,37 +355,26 @@ test('a resting routine is stopped when the page is hidden', async () => {
   await runUntil(page, 'the robot is written', async () => /^written and verified/.test(await page.locator('#flash-said').textContent()));
   await page.clock.runFor(6000);
   await gaitButton(page, 'patrol').click();
-  await runUntil(page, 'the robot patrols', async () =>
-    (await page.evaluate(() => window.lizard.gait)) === 'patrol', 20);
+  await waitForBoardGait(page, 'patrol');
   await page.clock.runFor(3500);
-  await page.evaluate(() => {
-    window.receivedText = '';
-    Object.defineProperty(document, 'hidden', { value: true });
-    document.dispatchEvent(new Event('visibilitychange'));
-  });
+  await page.evaluate(() => (window.receivedText = ''));
+  await hidePage(page);
   await page.clock.runFor(500);
   assert.match(await page.evaluate(() => window.receivedText), /^stop\n/);
 });
 
 test('unplugging a board while a routine is written is reported, and the board gets the routine later', async () => {
-  const page = await openWithBoard('robot', 8000);
-  await unfold(page, '#routines');
-  await putRoutine(page, ['walk 1']);
-  await waitForSteps(page, ['walk 1']);
+  const page = await openBoardWithRoutine(['walk 1']);
   await press(page, 'Write it to the board');
-  await runUntil(page, 'the robot is being written', async () =>
-    (await text(page, '#routine-said')).startsWith('writing'), 20);
+  await waitForText(page, '#routine-said', /^writing/, 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
-  await runUntil(page, 'the page reports it', async () => /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/.test(await text(page, '#routine-said')));
+  await waitForText(page, '#routine-said', /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/);
   assert.deepEqual(await readSteps(page), ['walk 1'], 'the routine is still in the page');
-  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
-  await page.evaluate(() => (window.isSameBoard = true));
-  await page.locator('#connect').click();
+  await reconnect(page);
   await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await press(page, 'Write it to the board');
-  await runUntil(page, 'the robot is written', async () =>
-    /^written and verified/.test(await text(page, '#routine-said')));
+  await waitForText(page, '#routine-said', /^written and verified/);
 });
 
 test('with a firmware for another robot format the page says what to write', async () => {

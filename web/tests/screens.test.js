@@ -1,13 +1,11 @@
 // The page on a phone, with a mouse, in forced colours, and in browsers that cannot run it.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { address, advance, openBlank, closeBrowser, complaints, openBrowser, openPage, overflow, openStanding, closePages, unfold, withTimeout } from './browser.js';
+import { address, advance, openBlank, complaints, openPage, overflow, openStanding, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const PORTRAIT = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
@@ -33,10 +31,7 @@ async function swipe(page, selector, rightPx, downPx) {
   await sendTouch('touchEnd', []);
 }
 
-for (const [name, options] of [
-  ['upright', PORTRAIT],
-  ['on its side', LANDSCAPE],
-]) {
+for (const [name, options] of [['upright', PORTRAIT], ['on its side', LANDSCAPE]]) {
   test(`Stop is on the screen of a phone ${name}, wherever the page is scrolled to`, async () => {
     const page = await openStanding(options);
     for (const panel of ['#world', '#power', '#keep']) await unfold(page, panel);
@@ -174,14 +169,9 @@ test('a page that was opened as a file says what it needs', async () => {
 test('long names of gaits fit on their buttons', async () => {
   for (const options of [PORTRAIT, { viewport: { width: 1400, height: 1000 } }]) {
     const page = await openStanding(options);
-    await page.locator('#robot').selectOption('own-gaits');
-    await page.waitForFunction(() => window.lizard.file === 'own-gaits');
+    await chooseRobot(page, 'own-gaits');
     const buttons = await page.locator('#gaits button').evaluateAll((buttons) =>
-      buttons.map((button) => ({
-        name: button.dataset.command,
-        height: button.offsetHeight,
-        excessPixels: button.scrollWidth - button.clientWidth,
-      })),
+      buttons.map((button) => ({ name: button.dataset.command, height: button.offsetHeight, excessPixels: button.scrollWidth - button.clientWidth })),
     );
     assert.ok(buttons.some(({ name }) => name.length > 40));
     for (const { name, height, excessPixels } of buttons) {

@@ -2,19 +2,17 @@
 // step.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
-import { tmpdir } from 'node:os';
+import { writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil } from './board.js';
-import { advance, closeBrowser, closePages, complaints, openBrowser, openStanding, overflow, openPage, TIMEOUT_MS, text, unfold } from './browser.js';
+import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, connect, waitForText, sendToBoard } from './board.js';
+import { advance, complaints, openStanding, overflow, openPage, TIMEOUT_MS, text, unfold, useBrowser, download } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
+import { makeFolder } from './folder.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Arduino pins of A1 to A4, as robot.toml has them. */
 const PINS = [9, 10, 11, 3];
@@ -30,7 +28,20 @@ const goToStep = async (page, name) => {
 const pulseWidthsOf = (page) => page.evaluate((pins) => pins.map((pin) => window.pulseWidthsUs[pin]), PINS);
 
 /** Advances the clock until the dialog shows this message. */
-const waitForMessage = (page, pattern) => runUntil(page, `${pattern} is shown`, async () => pattern.test(await text(page, '#setup-said')));
+const waitForMessage = (page, pattern) => waitForText(page, '#setup-said', pattern);
+/** Advances the clock until the dialog says that the board has this firmware and this robot. */
+const waitForThisRobot = (page) =>
+  runUntil(page, 'the board greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
+/** Types a number into a box of the dialog. */
+async function typeNumber(page, label, number) {
+  await dialogOf(page).getByLabel(label).fill(number);
+  await dialogOf(page).getByLabel(label).press('Enter');
+}
+/** Leaves the dialog, and waits until it is closed. */
+async function leave(page) {
+  await press(page, 'Leave');
+  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
+}
 
 /** Presses a button and waits for a message. */
 async function pressAndWait(page, name, pattern) {
@@ -44,10 +55,7 @@ function assertNear(values, expected, tolerance, quantity) {
 
 /** Reads the robot's own answer to `cal`. */
 async function readCalibration(page) {
-  const previousCount = await page.locator('#log div', { hasText: /^ok cal$/ }).count();
-  await page.getByLabel('A line for the robot').fill('cal');
-  await page.getByRole('button', { name: 'Send' }).click();
-  await runUntil(page, 'cal is answered', async () => (await page.locator('#log div', { hasText: /^ok cal$/ }).count()) > previousCount);
+  await sendToBoard(page, 'cal');
   return (await page.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
 }
 
@@ -56,7 +64,7 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await dialogOf(page).getByText('2 of 9: Write the firmware').waitFor();
   await dialogOf(page).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
   await pressAndWait(page, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
-  await runUntil(page, 'the board greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
+  await waitForThisRobot(page);
   await press(page, 'Go on');
 
   // The servos get power now, so there must be no pulses.
@@ -92,32 +100,29 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await goToStep(page, 'Scale');
   await pressAndWait(page, 'Turn A1', /^A1 was told to turn 30°/);
   assertNear(await pulseWidthsOf(page), [1200, 1500, 1496, 1500], 0.6, 'thirty degrees in the safe direction');
-  await dialogOf(page).getByLabel('It turned by, degrees').fill('27.75');
-  await dialogOf(page).getByLabel('It turned by, degrees').press('Enter');
+  await typeNumber(page, 'It turned by, degrees', '27.75');
   // 10 us per degree, times 30, divided by 27.75.
   await waitForMessage(page, /^The scale of A1 is 10\.81 µs per degree/);
   // A new scale does not move the horn, so the trim in degrees changes.
   await press(page, 'A3 back right');
   await pressAndWait(page, 'Turn A3', /^A3 was told to turn 30°/);
-  await dialogOf(page).getByLabel('It turned by, degrees').fill('27.75');
-  await dialogOf(page).getByLabel('It turned by, degrees').press('Enter');
+  await typeNumber(page, 'It turned by, degrees', '27.75');
   await waitForMessage(page, /^The scale of A3 is 10\.81 µs per degree/);
-  await runUntil(page, 'the robot stands', async () => (await text(page, '#doing')) === 'stand');
+  await waitForText(page, '#doing', /^stand$/);
   await page.clock.runFor(500);
   assertNear(await pulseWidthsOf(page), [1500, 1500, 1496, 1500], 0.6, 'the neutral pose is unchanged');
 
   await goToStep(page, 'Limits');
-  await runUntil(page, 'the robot stands', async () => (await text(page, '#doing')) === 'stand');
+  await waitForText(page, '#doing', /^stand$/);
   await press(page, 'A4 back left');
   await pressAndWait(page, '↻ 5°', /^A4 points to 216\.41°/);
   await press(page, 'A4 back left');
-  await dialogOf(page).getByLabel('From, degrees').fill('150');
-  await dialogOf(page).getByLabel('From, degrees').press('Enter');
+  await typeNumber(page, 'From, degrees', '150');
   await waitForMessage(page, /^A4 goes from 150\.00° to 311\.41°/);
 
   await goToStep(page, 'First walk');
   assert.equal(await dialogOf(page).getByText('Not proven yet').count(), 0);
-  await runUntil(page, 'the robot stands', async () => (await text(page, '#doing')) === 'stand');
+  await waitForText(page, '#doing', /^stand$/);
   await pressAndWait(page, 'Let it walk', /^The robot does "walk"/);
   const startY = await page.evaluate(() => window.lizard.last.place.y);
   await page.clock.runFor(3000);
@@ -128,9 +133,7 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await goToStep(page, 'Keep');
   await dialogOf(page).getByText('Not saved yet.').waitFor();
   await pressAndWait(page, 'Save in the board', /^Saved: the board begins with it/);
-  const pendingDownload = page.waitForEvent('download');
-  await press(page, 'Save as a file');
-  const file = await (await pendingDownload).path();
+  const { bytes } = await download(page, dialogOf(page).getByRole('button', { name: 'Save as a file', exact: true }));
 
   // The restarted board has the calibration, and the host's program accepts the saved file.
   await page.evaluate(() => window.attachedBoard.reset('external'));
@@ -141,24 +144,19 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
     '# A3 trim -0.37 limit 228.59 48.59 dir + scale 10.81',
     '# A4 trim 0.00 limit 150.00 311.41 dir + scale 10.00',
   ]);
-  const folder = await mkdtemp(join(tmpdir(), 'lizard-'));
-  try {
-    const calibrationFile = join(folder, 'calibration.toml');
-    await writeFile(calibrationFile, await readFile(file));
-    const root = new URL('../..', import.meta.url).pathname;
-    const robotArgs = ['--sim', '--robot', 'robot.toml'];
-    const { stdout } = await promisify(execFile)(process.env.LIZARD, ['calibrate', 'restore', calibrationFile, ...robotArgs], { cwd: root, timeout: TIMEOUT_MS });
-    assert.match(stdout, /has accepted and saved the calibration of .*/);
-  } finally {
-    await rm(folder, { recursive: true });
-  }
+  const calibrationFile = join(await makeFolder(), 'calibration.toml');
+  await writeFile(calibrationFile, bytes);
+  const root = new URL('../..', import.meta.url).pathname;
+  const robotArgs = ['--sim', '--robot', 'robot.toml'];
+  const { stdout } = await promisify(execFile)(process.env.LIZARD, ['calibrate', 'restore', calibrationFile, ...robotArgs], { cwd: root, timeout: TIMEOUT_MS });
+  assert.match(stdout, /has accepted and saved the calibration of .*/);
 });
 
 test('a board with another robot is recognized, and gets only the page\'s robot written', async () => {
   const page = await openWithBoard('large', 5000);
   await dialogOf(page).getByText('has this firmware and another robot, large ').waitFor();
   await pressAndWait(page, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
-  await runUntil(page, 'the board greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
+  await waitForThisRobot(page);
 });
 
 test('a board that does not answer is reported, and no step is a dead end', async () => {
@@ -169,14 +167,11 @@ test('a board that does not answer is reported, and no step is a dead end', asyn
   await dialogOf(page).getByText('No robot with this firmware answers').waitFor();
   await press(page, 'To the board');
   await press(page, 'Disconnect');
-  await runUntil(page, 'the simulation is back', async () => /simulated UNO/.test(await text(page, '#where')));
+  await waitForText(page, '#where', /simulated UNO/);
 });
 
 test('a board that sends random bytes is not mistaken for a robot', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.evaluate(() => (window.boardSendsGarbage = true));
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
+  const page = await openWithBoard('robot', 0, { boardSendsGarbage: true });
   await runUntil(page, 'the page asks about the board', async () => dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').isVisible());
   await pressAndWait(page, 'Write firmware and robot', /^not written: /);
   const lengths = await page.locator('#log div').evaluateAll((lines) => lines.map(({ textContent }) => textContent.length));
@@ -188,9 +183,7 @@ test('unplugging the board is reported at any step, and the dialog continues whe
   const names = await page.locator('#setup-steps button').allTextContents();
   assert.equal(names.length, 9);
   for (const name of names) {
-    await page.evaluate(() => (window.attachedBoard = undefined));
-    await page.locator('#connect').click();
-    await page.waitForFunction(() => window.attachedBoard);
+    await connect(page, { attachedBoard: undefined });
     await page.clock.runFor(4500);
     await goToStep(page, name);
     await page.clock.runFor(400);
@@ -200,8 +193,7 @@ test('unplugging the board is reported at any step, and the dialog continues whe
     if (mainButton) await mainButton.click();
     await page.clock.runFor(60);
     await page.evaluate(() => window.unplug());
-    await runUntil(page, `the step ${name} reports it`, async () =>
-      /is not connected any more/.test(await text(page, '#setup-said')));
+    await waitForMessage(page, /is not connected any more/);
     assert.match(await text(page, '#setup-step'), new RegExp(`^${names.indexOf(name) + 1} of 9`), 'the step is kept');
     assert.equal(await dialogOf(page).getAttribute('aria-busy'), 'false', 'no action waits forever');
   }
@@ -212,11 +204,9 @@ test('a board that is unplugged while it is written is reported, and can be writ
   await press(page, 'Write firmware and robot');
   await page.clock.runFor(1500);
   await page.evaluate(() => window.unplug());
-  await runUntil(page, 'the loss of the board is shown', async () => /is not connected any more|not written/.test(await text(page, '#setup-said')));
-  await page.evaluate(() => (window.attachedBoard = undefined));
+  await waitForMessage(page, /is not connected any more|not written/);
   await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
+  await connect(page, { attachedBoard: undefined });
   await page.clock.runFor(8000);
   await pressAndWait(page, 'Write firmware and robot', /^written and verified/);
 });
@@ -252,8 +242,7 @@ test('the robot does not walk while it is being assembled', async () => {
   await page.keyboard.up('w');
   assert.ok(!(await page.evaluate(() => window.receivedText)).slice(previousLength).includes('walk'));
   await page.evaluate(() => delete navigator.getGamepads);
-  await press(page, 'Leave');
-  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
+  await leave(page);
   await page.locator('#gaits button[data-command="walk"]').click();
   await runUntil(page, 'the robot walks', async () => (await page.evaluate(() => window.lizard.gait)) === 'walk');
   await page.locator('#setup-open').click();
@@ -278,8 +267,7 @@ test('leaving restores the robot, and the dialog opens again at the same step', 
   await page.clock.runFor(500);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
   assert.notDeepEqual(await readCalibration(page), previousCalibration);
-  await press(page, 'Leave');
-  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
+  await leave(page);
   await page.getByText('the robot has the calibration that it had before').waitFor();
   assert.deepEqual(await readCalibration(page), previousCalibration);
   await page.locator('#setup-open').click();
@@ -288,8 +276,7 @@ test('leaving restores the robot, and the dialog opens again at the same step', 
   await goToStep(page, 'Signs');
   await pressAndWait(page, 'Turn A1', /^A1 was told to turn 10°/);
   await press(page, 'Yes');
-  await press(page, 'Leave');
-  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
+  await leave(page);
   await page.locator('#setup-open').click();
   await goToStep(page, 'First walk');
   await dialogOf(page).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
@@ -310,8 +297,7 @@ test('leaving reverts a setting whose answer was lost, and saving stores the set
   };
   await setTrimWithoutAnswer();
   assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /, 'the robot has the new trim');
-  await press(page, 'Leave');
-  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
+  await leave(page);
   assert.deepEqual(await readCalibration(page), previousCalibration);
 
   await page.locator('#setup-open').click();
@@ -327,8 +313,7 @@ test('a refusal by the robot is shown in its own words, and changes nothing', as
   const previousCalibration = await readCalibration(page);
   await goToStep(page, 'Limits');
   await page.clock.runFor(1000);
-  await dialogOf(page).getByLabel('From, degrees').fill('125');
-  await dialogOf(page).getByLabel('From, degrees').press('Enter');
+  await typeNumber(page, 'From, degrees', '125');
   await waitForMessage(page, /^The robot refuses "limit 1 125\.00 228\.59": A1 would not reach what the gaits need/);
   assert.equal(await dialogOf(page).getByLabel('From, degrees').inputValue(), '48.59');
   assert.deepEqual(await readCalibration(page), previousCalibration);

@@ -1,15 +1,11 @@
 // Joints are dragged on the drawing of the robot: its lengths follow, and a robot that cannot walk is refused during
 // the drag.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import {
-  advance, closeBrowser, complaints, openBrowser, overflow, openStanding, closePages, unfold,
-} from './browser.js';
+import { advance, complaints, overflow, openStanding, unfold, useBrowser, lengthOf, waitForLength } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 async function openSketch(options) {
   const page = await openStanding(options);
@@ -19,7 +15,6 @@ async function openSketch(options) {
   return page;
 }
 
-const lengthOf = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((entry) => entry.key === key).value, key);
 const jointOf = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
 /** Grabs a joint and moves it to the right and ahead in ten steps, without releasing it. */
@@ -49,14 +44,14 @@ test('the point of the head is dragged, and both couplers follow', async () => {
   const previousLengths = [await lengthOf(page, 'links.l2'), await lengthOf(page, 'links.l3')];
   assert.deepEqual(previousLengths, [50, 50]);
   // From the tip of a crank the coupler leads inward and ahead.
-  const tip = await jointOf(page, "end of the head's left crank").evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
-  const point = await jointOf(page, 'point of the head').evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
+  const positionOf = (name) => jointOf(page, name).evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
+  const [tip, point] = [await positionOf("end of the head's left crank"), await positionOf('point of the head')];
   const expectedMm = Math.round(2 * Math.hypot(point[0] - tip[0], point[1] - 4 - tip[1])) / 2;
   await drag(page, 'point of the head', [0, -4]);
   await waitForMessage(page, new RegExp(`^l2 = l3 = ${expectedMm} mm\\.$`));
   assert.equal(await lengthOf(page, 'links.l2'), 50, 'not before the release');
   await page.mouse.up();
-  await page.waitForFunction((expectedMm) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === expectedMm, expectedMm);
+  await waitForLength(page, 'links.l2', expectedMm);
   assert.equal(await lengthOf(page, 'links.l3'), expectedMm);
   assert.equal(await page.locator('#lengths input[name="links.l2"]').inputValue(), String(expectedMm));
   // The simulated UNO walks with the new robot.
@@ -66,7 +61,7 @@ test('the point of the head is dragged, and both couplers follow', async () => {
   assert.equal(await page.locator('#doing').innerText(), 'walk');
   await unfold(page, '#robot-editor');
   await page.locator('#robot-undo').click();
-  await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === 50);
+  await waitForLength(page, 'links.l2', 50);
 });
 
 test('a joint at an invalid place is refused during the drag, and goes to the nearest valid place', async () => {
@@ -76,7 +71,7 @@ test('a joint at an invalid place is refused during the drag, and goes to the ne
   await page.mouse.up();
   await waitForMessage(page, /(the nearest valid value|It stays as it was)\.$/);
   const expectedMm = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest valid value\.$/.exec(await readMessage(page))[1]);
-  await page.waitForFunction((expectedMm) => window.lizard.description.lengths.find(({ key }) => key === 'links.l2').value === expectedMm, expectedMm);
+  await waitForLength(page, 'links.l2', expectedMm);
 });
 
 test('a crank is lengthened on one side alone if the sides need not be equal', async () => {
@@ -90,7 +85,7 @@ test('a crank is lengthened on one side alone if the sides need not be equal', a
   await drag(page, "end of the head's left crank", [to[0] - from[0], from[1] - to[1]].map((component) => (5 * component) / barLength));
   await waitForMessage(page, /^l1 = 35 mm\.$/);
   await page.mouse.up();
-  await page.waitForFunction(() => window.lizard.description.lengths.find(({ key }) => key === 'links.l1').value === 35);
+  await waitForLength(page, 'links.l1', 35);
   assert.equal(await lengthOf(page, 'links.l4'), 30);
 });
 

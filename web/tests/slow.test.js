@@ -1,13 +1,11 @@
 // Times that a user waits, in real time; no other test runs beside this file. A busy machine can only make these times
 // longer, so one measurement within the limit is enough.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { address, closeBrowser, complaints, openBrowser, openBlank, closePages, withTimeout } from './browser.js';
+import { address, complaints, openBlank, withTimeout, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const MAX_MEASUREMENT_COUNT = 12;
 /** Limit of the time from the request for the page to the robot's first step, at full processor speed. */

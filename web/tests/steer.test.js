@@ -1,12 +1,10 @@
 // Driving by hand: keys and the stick walk for as long as they are held.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { advance, closeBrowser, complaints, openBrowser, openPage, closePages } from './browser.js';
+import { advance, complaints, openPage, useBrowser } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Opens the page and waits until all gaits are predicted. */
 async function openPredicted(options = {}) {
@@ -114,13 +112,9 @@ test('a gamepad drives', async () => {
     navigator.getGamepads = () => [null, window.gamepad];
   });
   await waitForGait(page, 'walk');
-  await page.evaluate(() => {
-    window.gamepad = { axes: [-0.8, -0.8], buttons: [] };
-  });
+  await page.evaluate(() => (window.gamepad = { axes: [-0.8, -0.8], buttons: [] }));
   await waitForGait(page, 'arc left');
-  await page.evaluate(() => {
-    window.gamepad = { axes: [0.1, 0], buttons: [] };
-  });
+  await page.evaluate(() => (window.gamepad = { axes: [0.1, 0], buttons: [] }));
   await waitForGait(page, 'stop');
 });
 

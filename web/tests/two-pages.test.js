@@ -1,13 +1,11 @@
 // Two pages connected to one robot: one by the board's cable, the other by a Bluetooth module at the same serial line.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
 import { openWithBoard } from './board.js';
-import { closeBrowser, closePages, complaints, openBrowser, openPage, text, withTimeout } from './browser.js';
+import { complaints, openPage, text, useBrowser, repeatUntil } from './browser.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 const activityOf = (page) => text(page, '#doing');
 const startWalk = (page) => page.locator('#gaits button[data-command="walk"]').click();
@@ -50,25 +48,15 @@ async function openTwoPages() {
     const bytesToBoard = await radioPage.evaluate(() => window.bytesToBoard.splice(0));
     await cablePage.evaluate((bytes) => bytes.length > 0 && window.attachedBoard.send(bytes), bytesToBoard);
   };
-  const runUntil = async (waitName, condition) => {
-    let isWaiting = true;
-    const advance = async () => {
-      while (isWaiting && !(await condition())) await step();
-    };
-    await withTimeout(waitName, advance()).finally(() => (isWaiting = false));
-  };
+  const runUntil = (waitName, condition) => repeatUntil(waitName, condition, step);
   await radioPage.locator('#connect').click();
-  await runUntil('the second page finds the robot', async () =>
-    (await text(radioPage, '#where')).includes('on Bluetooth'));
+  await runUntil('the second page finds the robot', async () => (await text(radioPage, '#where')).includes('on Bluetooth'));
   return { cablePage, radioPage, runUntil };
 }
 
 test('each of two pages shows the robot\'s activity, and stops a gait that the other has started', async () => {
   const { cablePage, radioPage, runUntil } = await openTwoPages();
-  for (const [driver, watcher] of [
-    [cablePage, radioPage],
-    [radioPage, cablePage],
-  ]) {
+  for (const [driver, watcher] of [[cablePage, radioPage], [radioPage, cablePage]]) {
     await startWalk(driver);
     for (const page of [driver, watcher]) await runUntil('both pages show the walk', async () => (await activityOf(page)) === 'walk');
     await watcher.keyboard.press('Escape');

@@ -1,22 +1,20 @@
 // The robot's section alone is written, behind the firmware that is already on the board.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { test } from 'node:test';
 
-import { openWithBoard, openWithErasedBoard, runUntil } from './board.js';
-import { closeBrowser, closePages, complaints, openBrowser, openStanding, openPage, text, unfold } from './browser.js';
+import { openWithBoard, openWithErasedBoard, runUntil, reconnect, waitForText } from './board.js';
+import { complaints, openStanding, openPage, text, unfold, useBrowser } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { imageOf } from './image.js';
 
-before(openBrowser);
-afterEach(closePages);
-after(closeBrowser);
+useBrowser();
 
 /** Address of the robot's section in the flash. */
 const SECTION_START = 0x6e00;
 const readFlash = async (page, from, to) => Buffer.from(await page.evaluate(([from, to]) => Array.from(window.attachedBoard.flash.subarray(from, to)), [from, to]));
 const sectionOf = async (name) => Buffer.from((await imageOf(name)).subarray(SECTION_START));
 /** Waits until a message is shown below a panel's buttons. */
-const waitForMessage = (page, pattern, selector = '#flash-said') => runUntil(page, `${pattern} is shown`, async () => pattern.test(await text(page, selector)));
+const waitForMessage = (page, pattern, selector = '#flash-said', stepMs = 100) => waitForText(page, selector, pattern, stepMs);
 const writeRobotAlone = (page) => page.locator('#flash-robot').click();
 
 /** Returns the servo pins that had a pulse; the LED's pin does not count. */
@@ -25,6 +23,16 @@ const pulsedPins = (page) => page.evaluate(() => window.lizard.description.servo
 async function unfoldFlashPanel(page) {
   await unfold(page, '#flash');
   return page;
+}
+
+/** Waits until a write has begun, and then for some pages of the flash, which take 17 ms each. */
+async function waitUntilPartIsWritten(page) {
+  await waitForMessage(page, /^writing/, '#flash-said', 20);
+  await page.clock.runFor(60);
+}
+
+async function assertFlash(page, start, expected) {
+  assert.deepEqual(await readFlash(page, start, start + expected.length), expected);
 }
 
 test('a robot is written in a second or two, and firmware and saved settings stay unchanged', async () => {
@@ -38,9 +46,8 @@ test('a robot is written in a second or two, and firmware and saved settings sta
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
   const seconds = Number(/in ([\d.]+) s/.exec(await text(page, '#flash-said'))[1]);
   assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
-  await runUntil(page, 'the board greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
-  const expected = await sectionOf('robot');
-  assert.deepEqual(await readFlash(page, SECTION_START, SECTION_START + expected.length), expected);
+  await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
+  await assertFlash(page, SECTION_START, await sectionOf('robot'));
   assert.deepEqual(await readFlash(page, 0, SECTION_START), codeBytes);
   assert.deepEqual(await page.evaluate(() => Array.from(window.attachedBoard.eeprom)), savedEeprom);
 });
@@ -70,7 +77,7 @@ test('one button writes an edited text to the board', async () => {
   await page.locator('#robot-text').fill(toml);
   await page.locator('#robot-write').click();
   await waitForMessage(page, /^written and verified in [\d.]+ s$/, '#robot-said');
-  await runUntil(page, 'the board greets', async () => /^on a board on USB, robot mine [0-9a-f]{8}$/.test(await text(page, '#where')));
+  await waitForText(page, '#where', /^on a board on USB, robot mine [0-9a-f]{8}$/);
 });
 
 test('without a board the buttons say what is missing', async () => {
@@ -88,40 +95,26 @@ test('no robot is written behind a firmware that reads another format, and the f
   await writeRobotAlone(page);
   await waitForMessage(page, /^not written: the board has lizard [\d.]+ robot large [0-9a-f]{8}, whose robots are of format \d+; this robot is of format \d+: write the firmware, too\. Nothing was written$/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash);
-  await runUntil(page, 'the firmware is still running', async () =>
-    /^on a board on USB with another robot/.test(await text(page, '#where')));
+  await waitForText(page, '#where', /^on a board on USB with another robot/);
 });
 
 test('the robot alone is written to a board that has not restarted', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.evaluate(() => {
-    window.boardKeepsRunning = true;
-    window.flashedRobot = 'large';
-  });
-  await page.locator('#connect').click();
-  await page.waitForFunction(() => window.attachedBoard);
-  await page.clock.runFor(5000);
+  const page = await openWithBoard('large', 5000, { boardKeepsRunning: true });
   assert.match(await text(page, '#where'), /that has not restarted/);
   await page.evaluate(() => (window.boardKeepsRunning = false));
   await unfoldFlashPanel(page);
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  const expected = await sectionOf('robot');
-  assert.deepEqual(await readFlash(page, SECTION_START, SECTION_START + expected.length), expected);
+  await assertFlash(page, SECTION_START, await sectionOf('robot'));
 });
 
 test('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
   await writeRobotAlone(page);
-  // Enough for some of the section's twenty flash pages, which take 17 ms each.
-  await runUntil(page, 'the board is being written', async () =>
-    (await text(page, '#flash-said')).startsWith('writing'), 20);
-  await page.clock.runFor(60);
+  await waitUntilPartIsWritten(page);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/);
-  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
-  await page.evaluate(() => (window.isSameBoard = true));
-  await page.locator('#connect').click();
+  await reconnect(page);
   await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
   await page.clock.runFor(5000);
   assert.deepEqual(await pulsedPins(page), []);
@@ -145,9 +138,7 @@ test('a board unplugged while the firmware is written does nothing, and can be w
   const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
   assert.equal((await pulsedPins(page)).length, 4, 'the robot stands');
   await page.locator('#flash-write').click();
-  await runUntil(page, 'the board is being written', async () =>
-    (await text(page, '#flash-said')).startsWith('writing'), 20);
-  await page.clock.runFor(60);
+  await waitUntilPartIsWritten(page);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, /^not written: .*\. The board has half a program now, and does nothing\. Its boot loader is still there: write it again$/);
   // The board runs alone, without the page.
@@ -160,15 +151,11 @@ test('a board unplugged while the firmware is written does nothing, and can be w
   // The boot loader itself blinks its LED.
   assert.deepEqual(Object.keys(pulses).filter((pin) => pin !== '13'), []);
   assert.deepEqual(await readFlash(page, 0, 4), Buffer.from([0xff, 0xcf, 0xff, 0xff]));
-  await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
-  await page.evaluate(() => (window.isSameBoard = true));
-  await page.locator('#connect').click();
-  await runUntil(page, 'the board is identified', async () =>
-    /without this firmware$/.test(await text(page, '#where')));
+  await reconnect(page);
+  await waitForText(page, '#where', /without this firmware$/);
   await page.locator('#flash-write').click();
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  const expected = Buffer.from(await imageOf('robot'));
-  assert.deepEqual(await readFlash(page, 0, expected.length), expected);
+  await assertFlash(page, 0, Buffer.from(await imageOf('robot')));
 });
 
 test('a robot alone is not written to a board without this firmware, and the message says why', async () => {
@@ -178,17 +165,14 @@ test('a robot alone is not written to a board without this firmware, and the mes
 });
 
 test('an older Nano, whose boot loader has another baud rate, is found, written and started', async () => {
-  const page = await openPage({}, installFakeSerial);
-  await page.evaluate(() => Object.assign(window, { flashedRobot: null, loaderBaud: 57_600, usbVendor: 0x1a86 }));
-  await page.locator('#connect').click();
+  const page = await openWithBoard(null, 0, { loaderBaud: 57_600, usbVendor: 0x1a86 });
   await runUntil(page, 'the board is identified', async () => (await text(page, '#problems')).startsWith('The board is an Arduino Nano, an ATmega328P by its boot loader'));
   await unfoldFlashPanel(page);
   await page.locator('#flash-write').click();
   await waitForMessage(page, /^no answer; the board is called again/);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  const expected = Buffer.from(await imageOf('robot'));
-  assert.deepEqual(await readFlash(page, 0, expected.length), expected);
-  await runUntil(page, 'the board greets', async () => /^on a board on USB, robot paper [0-9a-f]{8}$/.test(await text(page, '#where')));
+  await assertFlash(page, 0, Buffer.from(await imageOf('robot')));
+  await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
 });
 
 test('an older Nano that is unplugged while its baud rate is set is reported, and the simulation continues', async () => {
@@ -240,8 +224,7 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
   reply = 'accept';
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  const expected = await sectionOf('own-gaits');
-  assert.deepEqual(await readFlash(page, SECTION_START, SECTION_START + expected.length), expected);
+  await assertFlash(page, SECTION_START, await sectionOf('own-gaits'));
   assert.equal(dialogMessages.length, 2);
   // The section of a small robot ends below the Nano's boot loader, so no dialog opens.
   await page.locator('#robot').selectOption('robot');
