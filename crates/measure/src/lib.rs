@@ -9,19 +9,19 @@
 //! For a path without a prediction, `lizard_film` is enough.
 
 mod board;
+mod component;
 mod engine;
 mod gaits;
 mod named_film;
-mod part;
 mod predicted_gait;
 mod range;
 mod report;
 mod sheet;
 
 pub use board::board_height;
+pub use component::{COMPONENT_NAMES, Component, MAX_AGREEING_ERRORS, verdict};
 pub use gaits::{Gaits, MeasuredWalk};
 pub use named_film::NamedFilm;
-pub use part::{MAX_AGREEING_ERRORS, PART_NAMES, Part, verdict};
 pub use predicted_gait::predict_gait;
 pub use report::{GaitReport, PhasePoint, Report};
 pub use sheet::Paper;

@@ -3,13 +3,13 @@
 use lizard_robot::{CheckedGait, MovementRange, Robot};
 use serde::Serialize;
 
-use crate::part::PART_NAMES;
+use crate::component::COMPONENT_NAMES;
 
 /// The smallest and the largest predicted movement per cycle, forward or as a turn, while one assumption at a time is
 /// set to either end of its plausible range.
 #[derive(Debug, Serialize)]
 pub(crate) struct PredictionRange {
-    /// The component of the movement, one of [`PART_NAMES`].
+    /// The component of the movement, one of [`COMPONENT_NAMES`].
     part: &'static str,
     /// The smallest predicted movement, mm or deg.
     least: f64,
@@ -27,7 +27,7 @@ impl PredictionRange {
         let movement_range = MovementRange::of(robot, gait, pace);
         let (smallest, largest) = (movement_range.smallest, movement_range.largest);
         Self {
-            part: PART_NAMES[if movement_range.is_turn { 2 } else { 0 }],
+            part: COMPONENT_NAMES[if movement_range.is_turn { 2 } else { 0 }],
             least: smallest.movement,
             most: largest.movement,
             least_by: smallest.assumption,

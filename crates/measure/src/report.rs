@@ -6,10 +6,10 @@ use lizard_film::{CyclePoint, MeasuredGait, Setup};
 use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED_NOTE};
 use serde::Serialize;
 
+use crate::component::{COMPONENT_NAMES, Component};
 use crate::engine::mujoco_movement;
 use crate::gaits::{Candidate, Gaits, MeasuredWalk};
 use crate::named_film::NamedFilm;
-use crate::part::{PART_NAMES, Part};
 use crate::range::PredictionRange;
 
 /// Largest difference from the prediction within a cycle, in standard errors, that counts as agreement. It is larger
@@ -51,11 +51,11 @@ pub struct GaitReport<'a> {
     /// Duration of a cycle by robot.toml, s.
     period_expected: f64,
     /// Distance forward in a cycle, mm, in the robot's frame at the start of the cycle.
-    pub forward: Part,
+    pub forward: Component,
     /// Distance to the left in a cycle, mm.
-    pub left: Part,
+    pub left: Component,
     /// Turn in a cycle, deg, counter-clockwise positive.
-    pub turn: Part,
+    pub turn: Component,
     /// The movement of each cycle.
     each: Vec<CycleMovement>,
     /// The mean path within a cycle, beside the predicted one.
@@ -92,11 +92,11 @@ pub struct PhasePoint {
     /// Phase of the cycle, 0 to 1.
     phase: f64,
     /// Distance forward since the start of the cycle, mm.
-    pub forward: Part,
+    pub forward: Component,
     /// Distance to the left since the start of the cycle, mm.
-    pub left: Part,
+    pub left: Component,
     /// Turn since the start of the cycle, deg, counter-clockwise positive.
-    pub turn: Part,
+    pub turn: Component,
 }
 
 /// The largest deviation from the predicted path within a cycle.
@@ -104,7 +104,7 @@ pub struct PhasePoint {
 struct LargestDeviation {
     /// Phase of the cycle, 0 to 1.
     phase: f64,
-    /// The component of the movement, one of [`PART_NAMES`].
+    /// The component of the movement, one of [`COMPONENT_NAMES`].
     part: &'static str,
     /// Measured minus predicted, mm or deg.
     difference: f64,
@@ -176,7 +176,7 @@ impl LargestDeviation {
             predicted_deviations.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
         Some(Self {
             phase: point.phase,
-            part: PART_NAMES[axis],
+            part: COMPONENT_NAMES[axis],
             difference: point.measured[axis].value - point.predicted[axis],
             differs,
             agrees: differs.abs() <= MAX_AGREEING_ERRORS_OF_ALL,
@@ -232,14 +232,15 @@ impl<'a> GaitReport<'a> {
             measured_gait.left,
             measured_gait.turn,
         ];
-        let [forward, left, turn] = [0, 1, 2].map(|i| Part::new(means[i], predicted_values[i]));
+        let [forward, left, turn] =
+            [0, 1, 2].map(|i| Component::new(means[i], predicted_values[i]));
         let differs_from_prediction = [&forward, &left, &turn]
             .iter()
-            .any(|part| part.agrees == Some(false));
+            .any(|component| component.agrees == Some(false));
         let phase_point_of = |point: &CyclePoint| {
             let part_of = |i: usize| {
                 let predicted_value = predicted_values[i].is_some().then_some(point.predicted[i]);
-                Part::new(point.measured[i], predicted_value)
+                Component::new(point.measured[i], predicted_value)
             };
             PhasePoint {
                 phase: point.phase,
@@ -281,7 +282,7 @@ impl<'a> GaitReport<'a> {
     }
 
     /// The components of the movement: forward, left and turn.
-    pub fn parts(&self) -> [&Part; 3] {
+    pub fn components(&self) -> [&Component; 3] {
         [&self.forward, &self.left, &self.turn]
     }
 
@@ -301,8 +302,8 @@ impl<'a> GaitReport<'a> {
             let _ = writeln!(text, "{film}, {from:.1} to {to:.1} s{like_text}");
         }
         text += "a cycle      measured      sd   error  predicted\n";
-        for (name, part) in PART_NAMES.iter().zip(self.parts()) {
-            text += &part.line(name);
+        for (name, component) in COMPONENT_NAMES.iter().zip(self.components()) {
+            text += &component.line(name);
         }
         if let Some(range) = &self.range {
             text += &range.line();
@@ -408,8 +409,8 @@ impl<'a> Report<'a> {
         for gait in &self.gaits {
             text += &gait.text();
         }
-        let mut parts = self.gaits.iter().flat_map(GaitReport::parts);
-        if parts.any(|part| part.predicted.is_none()) {
+        let mut components = self.gaits.iter().flat_map(GaitReport::components);
+        if components.any(|component| component.predicted.is_none()) {
             let _ = write!(text, "\n{UNDECIDED_NOTE}");
         }
         text

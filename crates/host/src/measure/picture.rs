@@ -1,6 +1,6 @@
 //! A picture to share: the path within a cycle and the distances per cycle of each gait, measured beside predicted.
 
-use lizard_measure::{GaitReport, PART_NAMES, Report};
+use lizard_measure::{COMPONENT_NAMES, GaitReport, Report};
 use svg::node::element::Group;
 
 use crate::shared::ink::{
@@ -147,13 +147,13 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
 
 /// Draws the components of the movement in a cycle as bars.
 fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
-    let parts = gait.parts();
-    let ends = parts.iter().flat_map(|part| {
+    let components = gait.components();
+    let ends = components.iter().flat_map(|component| {
         let error_ends = [
-            part.mean - ERROR_BAR_STANDARD_ERRORS * part.error,
-            part.mean + ERROR_BAR_STANDARD_ERRORS * part.error,
+            component.mean - ERROR_BAR_STANDARD_ERRORS * component.error,
+            component.mean + ERROR_BAR_STANDARD_ERRORS * component.error,
         ];
-        error_ends.into_iter().chain(part.predicted)
+        error_ends.into_iter().chain(component.predicted)
     });
     let [low, high] = ends.fold([0.0f64; 2], |[low, high], end| {
         [low.min(end), high.max(end)]
@@ -162,14 +162,14 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let plot = Plot {
         corner: (BARS_X, top),
         size: (BARS_WIDTH, PANEL_HEIGHT),
-        x_range: (0.5, 0.5 + parts.len() as f64),
+        x_range: (0.5, 0.5 + components.len() as f64),
         y_range: (low - margin, high + margin),
     };
     // The tick step is longer than the axis, so no ticks are drawn; the names of the bars are below the axis.
     let name_axis = Axis::new(10.0, "");
     let value_axis = Axis::new(tick_step(high - low + 2.0 * margin), "");
     let mut group = plot.draw_grid(group, &name_axis, &value_axis);
-    for (i, part) in parts.into_iter().enumerate() {
+    for (i, component) in components.into_iter().enumerate() {
         // Each component has a slot of width 1, with the measured bar to the left of the predicted one.
         let slot_x = 0.5 + i as f64;
         let draw_bar = |offset: f64, value: f64, colour: &str| {
@@ -177,12 +177,12 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             let (right, bottom) = plot.page_point(slot_x + offset + 0.28, value.min(0.0));
             rectangle((left, top), (right - left, bottom - top), colour)
         };
-        group = group.add(draw_bar(0.2, part.mean, MEASURED_COLOUR));
-        if let Some(predicted) = part.predicted {
+        group = group.add(draw_bar(0.2, component.mean, MEASURED_COLOUR));
+        if let Some(predicted) = component.predicted {
             group = group.add(draw_bar(0.52, predicted, PREDICTED_COLOUR).set("fill-opacity", 0.6));
         }
         let [low, high] = [-ERROR_BAR_STANDARD_ERRORS, ERROR_BAR_STANDARD_ERRORS]
-            .map(|errors| part.mean + errors * part.error);
+            .map(|errors| component.mean + errors * component.error);
         let x = slot_x + 0.34;
         group = group.add(line(
             plot.page_point(x, low),
@@ -203,9 +203,9 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             (x, y + 20.0 + 18.0 * lines)
         };
         group = group
-            .add(text_middle(PART_NAMES[i], point_below(0.0), 15.0))
+            .add(text_middle(COMPONENT_NAMES[i], point_below(0.0), 15.0))
             .add(text(
-                &part.verdict(),
+                &component.verdict(),
                 point_below(1.0),
                 13.0,
                 GREY,

@@ -6,11 +6,11 @@ use serde::Serialize;
 /// Largest difference from the prediction, in standard errors, that counts as agreement.
 pub const MAX_AGREEING_ERRORS: f64 = 2.0;
 /// The names of a movement's components, with their units.
-pub const PART_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
+pub const COMPONENT_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
 /// A measured component of a movement, beside its prediction.
 #[derive(Debug, Serialize)]
-pub struct Part {
+pub struct Component {
     /// The mean, mm or deg.
     pub mean: f64,
     /// Standard deviation of single cycles, mm or deg.
@@ -38,7 +38,7 @@ pub fn verdict(difference_in_errors: f64) -> String {
     format!("{:.1} errors {word}", difference_in_errors.abs())
 }
 
-impl Part {
+impl Component {
     pub(crate) fn new(mean: Mean, predicted: Option<f64>) -> Self {
         // A simulated film may have no spread; the bound avoids a division by zero.
         let differs =
