@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::cycles::{self, Cycles};
 use crate::frame::Frame;
 use crate::gait::Gait;
-use crate::likeness::{self, GaitMatch};
+use crate::gait_match::{self, GaitMatch};
 use crate::measured_gait::MeasuredGait;
 use crate::path::{PathPoint, unwrap_headings};
 use crate::scene::{POSE_PARAMETER_COUNT, SHARED_PARAMETER_COUNT, Scene};
@@ -101,7 +101,7 @@ impl AnalysedFilm {
 
     /// Finds which of the gaits the robot's path between two times, s, shows.
     pub fn match_gait(&self, gaits: &[Gait], interval: [f64; 2]) -> GaitMatch {
-        likeness::match_gait(self.path_between(Some(interval)), gaits)
+        gait_match::match_gait(self.path_between(Some(interval)), gaits)
     }
 
     /// The camera in each picture of the path.

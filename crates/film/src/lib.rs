@@ -4,7 +4,7 @@
 //! deck, whose height is known, shows where the robot is ([`sheet`] defines the printed sheet of tags). [`Film::add`]
 //! reads the tags of each picture. [`Film::analyse`] finds the camera (`scene.rs`) and the robot's path (`path.rs`).
 //! [`AnalysedFilm::walks`] finds the walks between the robot's rests (`walks.rs`), and [`AnalysedFilm::match_gait`] the
-//! gait of a walk (`likeness.rs`). [`AnalysedFilm::measure`] finds the cycles of a walk (`cycles.rs`, `clock.rs`),
+//! gait of a walk (`gait_match.rs`). [`AnalysedFilm::measure`] finds the cycles of a walk (`cycles.rs`, `clock.rs`),
 //! their mean with its error (`mean.rs`) and the path within a cycle (`cycle_path.rs`). Two other measurements use the
 //! same tags: [`Slide`] is the friction of the pads, and [`MeasuredServo`] is the response of a single servo. The crate
 //! reads no file and prints nothing.
@@ -29,9 +29,9 @@ mod figure;
 mod film;
 mod frame;
 mod gait;
+mod gait_match;
 mod homography;
 mod least_squares;
-mod likeness;
 mod mean;
 mod measured_gait;
 mod measured_servo;
@@ -53,7 +53,7 @@ pub use cycle_path::CyclePoint;
 pub use figure::Figure;
 pub use film::{Film, Setup};
 pub use gait::Gait;
-pub use likeness::GaitMatch;
+pub use gait_match::GaitMatch;
 pub use mean::Mean;
 pub use measured_gait::MeasuredGait;
 pub use measured_servo::{DeadBand, Jig, MeasuredServo};

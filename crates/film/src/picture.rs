@@ -24,7 +24,7 @@ impl Picture {
 
     /// Converts a coloured picture to grey. It has four bytes per pixel: red, green, blue, and one that is ignored.
     /// `None` if the length of `pixels` is not `4 * width * height`, or is zero.
-    pub fn of_colours(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
+    pub fn from_rgba(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
         let (pixels, rest) = pixels.as_chunks::<4>();
         let grey = pixels
             .iter()

@@ -5,7 +5,7 @@ use lizard_film::{CameraEstimate, Film, Gait, Mean, MeasuredGait, read_tags};
 use lizard_studio::render::{Studio, random_normal};
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
-use crate::studio::{FULL_SCALE, film_walk, small_studio};
+use crate::studio::{FULL_SCALE, film_from_hand, film_walk, small_studio};
 
 /// Films some cycles of a gait with a random camera, and measures them.
 fn measure_film(
@@ -28,14 +28,15 @@ fn measure_film(
 /// Measures a gait in a film; returns the result and the camera.
 fn analyse_and_measure(film: &Film, gait: &Gait) -> (MeasuredGait, CameraEstimate) {
     let analysed_film = film.analyse(FULL_SCALE).expect("the film can be analysed");
-    let measured = analysed_film
-        .measure(gait, None)
-        .expect("the gait can be measured");
-    (measured, analysed_film.camera)
+    let measured = analysed_film.measure(gait, None);
+    (
+        measured.expect("the gait can be measured"),
+        analysed_film.camera,
+    )
 }
 
 /// The measured forward, left and turn of a cycle, each with its true value.
-fn means_and_truths(measured: &MeasuredGait, gait: &Gait) -> [(Mean, f64); 3] {
+pub fn means_and_truths(measured: &MeasuredGait, gait: &Gait) -> [(Mean, f64); 3] {
     let truth = true_displacement(gait);
     [
         (measured.forward, truth.forward),
@@ -102,6 +103,12 @@ fn measure_films(
     })
 }
 
+/// The errors of a component's mean in all films.
+fn errors_of(results: &[[(Mean, f64); 3]], component: usize) -> Vec<f64> {
+    let components = results.iter().map(|components| components[component]);
+    components.map(|(mean, truth)| mean.value - truth).collect()
+}
+
 /// The components of a movement, with their units.
 const COMPONENT_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
@@ -125,17 +132,13 @@ fn in_short_films_93_to_97_percent_of_true_values_lie_within_two_standard_errors
     );
     let mut total_hit_count = 0;
     for (i, name) in COMPONENT_NAMES.into_iter().enumerate() {
-        let errors: Vec<f64> = results
-            .iter()
-            .map(|components| components[i].0.value - components[i].1)
-            .collect();
         let hit_films = results.iter().filter(|components| {
             let (mean, truth) = components[i];
             (mean.value - truth).abs() < 2.0 * mean.standard_error
         });
         let hit_count = hit_films.count();
         total_hit_count += hit_count;
-        let [bias, sd] = mean_and_deviation(&errors);
+        let [bias, sd] = mean_and_deviation(&errors_of(&results, i));
         let share = 100.0 * hit_count as f64 / film_count as f64;
         println!("{name:<10} within two errors {share:5.1} %, bias {bias:+.3}, sd {sd:.3}");
     }
@@ -157,19 +160,13 @@ fn ten_cycles_at_720p_on_a_tripod_have_small_errors_and_little_spread() {
     });
     println!("{film_count} films of 10 cycles, 1280 x 720, 30 pictures in a second");
     for (i, name) in COMPONENT_NAMES.into_iter().enumerate() {
-        let errors: Vec<f64> = results
+        let errors = errors_of(&results, i);
+        let cycle_sds = results
             .iter()
-            .map(|components| components[i].0.value - components[i].1)
-            .collect();
-        let cycle_sds: Vec<f64> = results
-            .iter()
-            .map(|components| components[i].0.standard_deviation)
-            .collect();
-        let ([bias, sd], [cycle_sd, _]) =
-            (mean_and_deviation(&errors), mean_and_deviation(&cycle_sds));
-        let max_error = errors
-            .iter()
-            .fold(0.0f64, |largest, error| largest.max(error.abs()));
+            .map(|components| components[i].0.standard_deviation);
+        let [bias, sd] = mean_and_deviation(&errors);
+        let [cycle_sd, _] = mean_and_deviation(&cycle_sds.collect::<Vec<_>>());
+        let max_error = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);
         println!(
             "{name:<10} one cycle's sd {cycle_sd:.3}, mean of a film: bias {bias:+.3}, sd {sd:.3}, largest {max_error:.3}"
         );
@@ -185,29 +182,12 @@ fn a_hand_held_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_deg
     let mut rng = Rng::with_seed(number_from_environment("SEED", 1) as u64);
     let gait = paper_gait("walk");
     let mut studio = Studio::random(&mut rng);
-    (
-        studio.camera_height,
-        studio.camera_tilt,
-        studio.focal_length,
-    ) = (750.0, 20.0, 0.75);
-    (studio.camera_direction, studio.camera_roll, studio.aim) = (90.0, 0.0, [0.0; 2]);
+    (studio.camera_height, studio.camera_tilt) = (750.0, 20.0);
+    (studio.camera_direction, studio.focal_length) = (90.0, 0.75);
+    (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
     let start = [-2.5 * true_displacement(&gait).forward, 0.0, 0.0];
     let walk = Walk::new(&gait, start, 5, Variation::default(), &mut rng);
-    let mut film = Film::default();
-    for i in 0..(walk.duration_s() * 12.0) as usize {
-        let mut shaken_studio = studio.clone();
-        shaken_studio.camera_height += 3.0 * random_normal(&mut rng);
-        shaken_studio.aim = shaken_studio
-            .aim
-            .map(|value| value + 3.0 * random_normal(&mut rng));
-        shaken_studio.camera_tilt += 0.3 * random_normal(&mut rng);
-        shaken_studio.camera_roll += 0.3 * random_normal(&mut rng);
-        let seconds = i as f64 / 12.0;
-        let background = shaken_studio.background(&mut rng);
-        let picture = background.picture(seconds, |time| walk.pose_at(time), &mut rng);
-        film.add(seconds, &picture)
-            .expect("the picture fits the film");
-    }
+    let film = film_from_hand(&studio, &walk, 12.0, 3.0, &mut rng);
     let (measured, camera) = analyse_and_measure(&film, &gait);
     assert!(camera.has_camera_moved);
     for (i, (mean, truth)) in means_and_truths(&measured, &gait).into_iter().enumerate() {
@@ -233,10 +213,9 @@ fn tags_are_found_as_in_a_search_of_the_whole_picture_even_after_a_jump() {
     for i in 0..12 {
         let distance = f64::from(i) * 4.0;
         // In the middle of the film, someone moves and turns the robot. The camera is hand-held, too.
-        let pose = if i < 6 {
-            [distance, 0.0, 0.0]
-        } else {
-            [-distance, 15.0, 0.4]
+        let pose = match i {
+            ..6 => [distance, 0.0, 0.0],
+            _ => [-distance, 15.0, 0.4],
         };
         studio.aim = [2.0 * random_normal(&mut rng), 2.0 * random_normal(&mut rng)];
         let background = studio.background(&mut rng);

@@ -2,11 +2,11 @@
 
 use fastrand::Rng;
 use lizard_film::Film;
-use lizard_studio::render::{Studio, random_normal};
+use lizard_studio::render::Studio;
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
-use crate::accuracy::number_from_environment;
-use crate::studio::{FULL_SCALE, film_robot};
+use crate::accuracy::{means_and_truths, number_from_environment};
+use crate::studio::{FULL_SCALE, film_from_hand, film_walk};
 
 /// Number of cycles in a film.
 const CYCLE_COUNT: usize = 6;
@@ -26,12 +26,9 @@ struct Camera {
 /// A studio with a good camera: 720p, on a tripod.
 fn good_studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
-    (
-        studio.focal_length,
-        studio.camera_height,
-        studio.camera_tilt,
-    ) = (0.78, 780.0, 20.0);
-    (studio.camera_direction, studio.camera_roll, studio.aim) = (90.0, 3.0, [0.0; 2]);
+    (studio.camera_height, studio.camera_tilt) = (780.0, 20.0);
+    (studio.camera_direction, studio.focal_length) = (90.0, 0.78);
+    (studio.camera_roll, studio.aim) = (3.0, [0.0; 2]);
     studio
 }
 
@@ -87,40 +84,11 @@ fn cameras() -> Vec<Camera> {
     ]
 }
 
-fn film_walk(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
-    let Camera {
-        studio,
-        picture_rate,
-        shake,
-        ..
-    } = camera;
-    if *shake == 0.0 {
-        return film_robot(
-            studio,
-            walk.duration_s(),
-            *picture_rate,
-            |time| walk.pose_at(time),
-            rng,
-        );
+fn film_with(camera: &Camera, walk: &Walk, rng: &mut Rng) -> Film {
+    match camera.shake {
+        0.0 => film_walk(&camera.studio, walk, camera.picture_rate, rng),
+        shake => film_from_hand(&camera.studio, walk, camera.picture_rate, shake, rng),
     }
-    let mut film = Film::default();
-    for i in 0..(walk.duration_s() * picture_rate) as usize {
-        let mut shaken_studio = studio.clone();
-        shaken_studio.camera_height += shake * random_normal(rng);
-        shaken_studio.aim = shaken_studio
-            .aim
-            .map(|value| value + shake * random_normal(rng));
-        shaken_studio.camera_tilt += shake / 10.0 * random_normal(rng);
-        shaken_studio.camera_roll += shake / 10.0 * random_normal(rng);
-        let seconds = i as f64 / picture_rate;
-        let picture =
-            shaken_studio
-                .background(rng)
-                .picture(seconds, |time| walk.pose_at(time), rng);
-        film.add(seconds, &picture)
-            .expect("the picture fits the film");
-    }
-    film
 }
 
 /// Run by `make measure-test`.
@@ -133,34 +101,20 @@ fn every_camera_measures_a_cycle_to_a_fifth_of_a_millimetre_and_half_a_degree() 
     for camera in cameras() {
         let mut rng = Rng::with_seed(seed);
         let start = -true_displacement(&gait).forward * CYCLE_COUNT as f64 / 2.0;
-        let walk = Walk::new(
-            &gait,
-            [start, 0.0, 0.05],
-            CYCLE_COUNT,
-            Variation::default(),
-            &mut rng,
-        );
-        let measured = film_walk(&camera, &walk, &mut rng)
+        let (start, variation) = ([start, 0.0, 0.05], Variation::default());
+        let walk = Walk::new(&gait, start, CYCLE_COUNT, variation, &mut rng);
+        let measured = film_with(&camera, &walk, &mut rng)
             .measure(FULL_SCALE, &gait)
             .unwrap_or_else(|trouble| panic!("{}: {trouble}", camera.name));
-        let truth = true_displacement(&gait);
-        let components = [
-            (measured.forward, truth.forward),
-            (measured.left, truth.left),
-            (measured.turn, truth.turn),
-        ];
-        let [forward, left, turn] =
-            components.map(|(mean, truth)| (mean.value - truth, mean.standard_deviation));
+        let [forward, left, turn] = means_and_truths(&measured, &gait)
+            .map(|(mean, truth)| (mean.value - truth, mean.standard_deviation));
         println!(
             "{:<42} {:+.3} {:.3}   {:+.3} {:.3}   {:+.3} {:.3}",
             camera.name, forward.0, forward.1, left.0, left.1, turn.0, turn.1
         );
         for ((error, cycle_sd), max_error) in [forward, left, turn].into_iter().zip(MAX_ERRORS) {
-            assert!(
-                error.abs() < max_error && cycle_sd < max_error,
-                "{}",
-                camera.name
-            );
+            let is_small = error.abs() < max_error && cycle_sd < max_error;
+            assert!(is_small, "{}", camera.name);
         }
     }
 }

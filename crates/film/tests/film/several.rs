@@ -1,10 +1,13 @@
 //! Films of several gaits with rests between them.
 
+use std::assert_matches;
+
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Gait, GaitMatch, MeasuredGait, Trouble, shortest_rest};
 use lizard_studio::render::Studio;
-use lizard_studio::walk::{Variation, WalkSeries, paper_gait, true_displacement};
+use lizard_studio::walk::{Variation, WalkSeries, paper_gait};
 
+use crate::accuracy::means_and_truths;
 use crate::studio::{FULL_SCALE, film_robot, small_studio};
 
 /// Pictures per second.
@@ -20,18 +23,10 @@ const VARIATION: Variation = Variation {
 fn film_walks(walks: &[(&Gait, usize)], rest: f64) -> (AnalysedFilm, WalkSeries) {
     let mut rng = Rng::with_seed(6);
     let series = WalkSeries::new([-60.0, 0.0, 0.0], walks, rest, VARIATION, &mut rng);
-    let pose_at = |time: f64| series.pose_at(time);
-    let film = film_robot(
-        &studio(),
-        series.duration_s(),
-        PICTURE_RATE,
-        pose_at,
-        &mut rng,
-    );
-    (
-        film.analyse(FULL_SCALE).expect("all tags are visible"),
-        series,
-    )
+    let (pose_at, duration_s) = (|time: f64| series.pose_at(time), series.duration_s());
+    let film = film_robot(&studio(), duration_s, PICTURE_RATE, pose_at, &mut rng);
+    let analysed_film = film.analyse(FULL_SCALE);
+    (analysed_film.expect("all tags are visible"), series)
 }
 
 fn studio() -> Studio {
@@ -40,18 +35,11 @@ fn studio() -> Studio {
 
 /// Checks that a result agrees with the true movement of a gait.
 fn check_result(measured: &MeasuredGait, gait: &Gait) {
-    let truth = true_displacement(gait);
-    let components = [
-        (measured.forward, truth.forward, 0.4),
-        (measured.left, truth.left, 0.4),
-        (measured.turn, truth.turn, 0.6),
-    ];
-    for (mean, truth, max_error) in components {
-        assert!((mean.value - truth).abs() < max_error, "{mean:?} {truth}");
-        assert!(
-            (mean.value - truth).abs() < 4.0 * mean.standard_error,
-            "{mean:?} {truth}"
-        );
+    let means_and_truths = means_and_truths(measured, gait).into_iter();
+    for ((mean, truth), max_error) in means_and_truths.zip([0.4, 0.4, 0.6]) {
+        let error = (mean.value - truth).abs();
+        assert!(error < max_error, "{mean:?} {truth}");
+        assert!(error < 4.0 * mean.standard_error, "{mean:?} {truth}");
     }
 }
 
@@ -70,33 +58,23 @@ fn each_gait_of_a_film_is_found_between_its_rests_and_measured() {
         assert!((-0.2..1.2).contains(&lead), "{found_span:?} {true_span:?}");
         assert!((-0.2..1.2).contains(&lag), "{found_span:?} {true_span:?}");
     }
+    let measure = |gait: &Gait, walk: [f64; 2]| {
+        let measured = analysed_film.measure(gait, Some(walk));
+        measured.expect("the gait can be measured")
+    };
     for (walk, i) in walks.iter().zip(order) {
-        assert_eq!(
-            analysed_film.match_gait(&gaits, *walk),
-            GaitMatch::Unique(i)
-        );
-        let measured = analysed_film
-            .measure(&gaits[i], Some(*walk))
-            .expect("the gait can be measured");
-        check_result(&measured, &gaits[i]);
+        let gait_match = analysed_film.match_gait(&gaits, *walk);
+        assert_eq!(gait_match, GaitMatch::Unique(i));
+        check_result(&measure(&gaits[i], *walk), &gaits[i]);
     }
     // Both walks together give one result, which is more accurate.
-    let [first, second] = [0, 3].map(|i| {
-        analysed_film
-            .measure(&gaits[0], Some(walks[i]))
-            .expect("the gait can be measured")
-    });
+    let [first, second] = [0, 3].map(|i| measure(&gaits[0], walks[i]));
     let combined = MeasuredGait::combine(&[first.clone(), second.clone()], &gaits[0]);
     check_result(&combined, &gaits[0]);
-    assert_eq!(
-        combined.cycles,
-        [&first.cycles[..], &second.cycles[..]].concat()
-    );
+    assert_eq!(combined.cycles, [first.cycles, second.cycles].concat());
     // A walk of another gait is refused.
-    let trouble = analysed_film
-        .measure(&gaits[2], Some(walks[1]))
-        .expect_err("the walk has the gait `left`");
-    assert!(matches!(trouble, Trouble::GaitMismatch { .. }), "{trouble}");
+    let result = analysed_film.measure(&gaits[2], Some(walks[1]));
+    assert_matches!(result, Err(Trouble::GaitMismatch { .. }));
 }
 
 #[test]
@@ -106,19 +84,9 @@ fn two_gaits_with_the_same_path_are_both_reported() {
     let (analysed_film, _) = film_walks(&[(&walk, 4)], 1.0);
     let walks = analysed_film.walks(shortest_rest(&gaits));
     let gait_match = analysed_film.match_gait(&gaits, walks[0]);
-    assert!(
-        matches!(
-            gait_match,
-            GaitMatch::Ambiguous {
-                best: 1,
-                second_best: 2
-            } | GaitMatch::Ambiguous {
-                best: 2,
-                second_best: 1
-            }
-        ),
-        "{gait_match:?}"
-    );
+    let [first, second] =
+        [(1, 2), (2, 1)].map(|(best, second_best)| GaitMatch::Ambiguous { best, second_best });
+    assert!([first, second].contains(&gait_match), "{gait_match:?}");
 }
 
 #[test]
@@ -138,10 +106,7 @@ fn a_walk_in_slow_motion_or_of_an_unknown_gait_matches_no_gait() {
     let (analysed_film, _) = film_walks(&[(&unknown, 4)], 1.0);
     let walks = analysed_film.walks(shortest_rest(&gaits));
     let gait_match = analysed_film.match_gait(&gaits, walks[0]);
-    assert!(
-        matches!(gait_match, GaitMatch::NoMatch(_)),
-        "{gait_match:?}"
-    );
+    assert_matches!(gait_match, GaitMatch::NoMatch(_));
 }
 
 #[test]
@@ -157,14 +122,11 @@ fn gaits_without_a_rest_between_them_are_not_mixed() {
                 // A result must be that of this gait alone, which is possible if this gait moves the robot farther
                 // than the other.
                 Ok(measured) => check_result(&measured, gait),
-                Err(trouble) => assert!(
-                    matches!(
-                        trouble,
-                        Trouble::GaitMismatch { .. }
-                            | Trouble::MovementChanges { .. }
-                            | Trouble::WrongPace { .. }
-                    ),
-                    "{trouble}"
+                Err(trouble) => assert_matches!(
+                    trouble,
+                    Trouble::GaitMismatch { .. }
+                        | Trouble::MovementChanges { .. }
+                        | Trouble::WrongPace { .. }
                 ),
             }
         }
@@ -214,9 +176,8 @@ fn a_deviation_from_the_predicted_path_is_found_at_its_phase() {
     }
     let measure = |gait: &Gait| {
         let (analysed_film, _) = film_walks(&[(gait, 6)], 1.0);
-        analysed_film
-            .measure(&walk, None)
-            .expect("the gait can be measured")
+        let measured = analysed_film.measure(&walk, None);
+        measured.expect("the gait can be measured")
     };
     let (phase, axis, errors) = largest_deviation(&measure(&swerving));
     assert!((phase - 0.6).abs() < 0.1 && axis == 1, "{phase} {axis}");

@@ -1,5 +1,7 @@
 //! The accuracy of measurements in films of a robot that slides down a tilted board.
 
+use std::assert_matches;
+
 use fastrand::Rng;
 use lizard_film::{AnalysedFilm, Figure, Film, Setup, Slide, SlideTrouble};
 use lizard_studio::board::{Board, EVEN_BOARD, small_studio};
@@ -75,45 +77,30 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
         end_tilt_deg: 12.0,
         ..SLIPPERY
     });
-    assert!(
-        matches!(not_slid, SlideTrouble::NoSlide { tilt, .. } if (tilt - 12.0).abs() < 1.0),
-        "{not_slid}"
-    );
+    assert_matches!(not_slid, SlideTrouble::NoSlide { tilt, .. } if (tilt - 12.0).abs() < 1.0);
     let moving = reason_of(Board {
         lift_start_s: 0.3,
         ..SLIPPERY
     });
-    assert!(matches!(moving, SlideTrouble::NotAtRest { .. }), "{moving}");
+    assert_matches!(moving, SlideTrouble::NotAtRest { .. });
     let across_slope = reason_of(Board {
         head_direction_deg: 36.0,
         ..SLIPPERY
     });
-    assert!(
-        matches!(across_slope, SlideTrouble::AcrossSlope { angle } if (angle - 36.0).abs() < 3.0),
-        "{across_slope}"
-    );
+    assert_matches!(across_slope, SlideTrouble::AcrossSlope { angle } if (angle - 36.0).abs() < 3.0);
     let pushed = reason_of(Board {
         slide_direction_deg: 180.0,
         ..SLIPPERY
     });
-    assert!(
-        matches!(pushed, SlideTrouble::NotDownhill { angle } if angle > 170.0),
-        "{pushed}"
-    );
+    assert_matches!(pushed, SlideTrouble::NotDownhill { angle } if angle > 170.0);
     let fast = reason_of(Board {
         lift_deg_per_s: 40.0,
         ..SLIPPERY
     });
-    assert!(
-        matches!(fast, SlideTrouble::LiftedTooFast { rate } if rate > 20.0),
-        "{fast}"
-    );
+    assert_matches!(fast, SlideTrouble::LiftedTooFast { rate } if rate > 20.0);
     let film = film_board(&SLIPPERY, &small_studio(), 5.0);
     let result = Slide::of(&analyse(&film));
-    assert!(
-        matches!(result, Err(SlideTrouble::TooFewPictures { .. })),
-        "{result:?}"
-    );
+    assert_matches!(result, Err(SlideTrouble::TooFewPictures { .. }));
 }
 
 /// Run by `make measure-test`. The board's level position has a standard error of 0.3 deg, as with a spirit level.
@@ -122,7 +109,7 @@ fn a_film_without_a_measurable_slide_is_refused_with_the_reason() {
 fn in_at_least_14_of_16_films_the_true_friction_lies_within_two_standard_errors() {
     let mut rng = Rng::with_seed(12);
     let film_count = 16;
-    let (mut static_hits, mut sliding_hits) = (0, 0);
+    let mut hits = [0; 2];
     for i in 0..film_count {
         let start_tilt_deg = 0.3 * random_normal(&mut rng);
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
@@ -140,30 +127,18 @@ fn in_at_least_14_of_16_films_the_true_friction_lies_within_two_standard_errors(
         (studio.camera_tilt, studio.distortion) =
             (random_between(0.0, 18.0), random_between(-0.006, 0.006));
         studio.readout_s = 0.015;
-        let slide = Slide::of(&analyse(&film_board(
-            &board,
-            &studio,
-            [30.0, 60.0][i / 2 % 2],
-        )));
-        let slide = slide.expect("the slide can be measured");
-        println!(
-            "static {:?} of {:.3}, sliding {:?} of {:.3}",
-            slide.static_friction,
-            board.static_friction,
-            slide.sliding_friction,
-            board.sliding_friction
-        );
-        let is_within_two_errors =
-            |figure: Figure, truth: f64| (figure.value - truth).abs() < 2.0 * figure.error;
-        static_hits += usize::from(is_within_two_errors(
-            slide.static_friction,
-            board.static_friction,
-        ));
-        sliding_hits += usize::from(is_within_two_errors(
-            slide.sliding_friction,
-            board.sliding_friction,
-        ));
+        let film = film_board(&board, &studio, [30.0, 60.0][i / 2 % 2]);
+        let slide = Slide::of(&analyse(&film)).expect("the slide can be measured");
+        let pairs = [
+            (slide.static_friction, board.static_friction),
+            (slide.sliding_friction, board.sliding_friction),
+        ];
+        for (hits, (figure, truth)) in hits.iter_mut().zip(pairs) {
+            println!("{figure:?} of {truth:.3}");
+            *hits += usize::from((figure.value - truth).abs() < 2.0 * figure.error);
+        }
     }
+    let [static_hits, sliding_hits] = hits;
     println!("{film_count} films: within two errors static {static_hits}, sliding {sliding_hits}");
     assert!(
         static_hits >= film_count - 2 && sliding_hits >= film_count - 2,

@@ -1,5 +1,7 @@
 //! The accuracy of measurements in films of a servo whose true values are known.
 
+use std::assert_matches;
+
 use fastrand::Rng;
 use lizard_contact::Place;
 use lizard_film::{Figure, Film, Jig, MeasuredServo, PathPoint, ServoTrouble, Setup};
@@ -95,6 +97,16 @@ fn nearest_dead_band(servo: &Servo, found_width: f64) -> f64 {
     found_width.clamp(servo.dead_band, servo.dead_band + friction)
 }
 
+/// The measured gain, rate and width of the dead band, each with its true value.
+fn gain_rate_and_width(measured: &MeasuredServo, servo: &Servo) -> [(Figure, f64); 3] {
+    let width = measured.dead_band.width.expect("the dead band is measured");
+    [
+        (measured.gain, servo.gain),
+        (measured.rate, servo.steady_rate()),
+        (width, nearest_dead_band(servo, width.value)),
+    ]
+}
+
 #[test]
 fn over_90_percent_of_figures_lie_within_two_standard_errors_at_60_to_240_pictures_a_second() {
     let mut rng = Rng::with_seed(1);
@@ -103,11 +115,13 @@ fn over_90_percent_of_figures_lie_within_two_standard_errors_at_60_to_240_pictur
         for _ in 0..60 {
             let servo = random_servo(&mut rng);
             let path = AngleCamera::phone(picture_rate).path(&servo, &mut rng);
-            let measured = MeasuredServo::of(&path, JIG).expect("the servo can be measured");
-            let width = measured.dead_band.width.expect("the dead band is measured");
-            figures[0].push((measured.gain, servo.gain));
-            figures[1].push((measured.rate, servo.steady_rate()));
-            figures[2].push((width, nearest_dead_band(&servo, width.value)));
+            let measured = measure(&path);
+            for (figures, figure) in figures
+                .iter_mut()
+                .zip(gain_rate_and_width(&measured, &servo))
+            {
+                figures.push(figure);
+            }
             figures[3].extend(measured.spin_up.map(|spin_up| (spin_up, servo.spin_up)));
         }
         for (i, max_error) in [0.005, 8.0, 0.2, 0.002].into_iter().enumerate() {
@@ -134,9 +148,7 @@ fn a_known_load_gives_the_stall_torque_within_two_standard_errors_in_over_90_per
             first_order_s: 1.1,
             ..free.clone()
         };
-        [free, loaded].map(|servo| {
-            MeasuredServo::of(&camera.path(&servo, rng), JIG).expect("the servo can be measured")
-        })
+        [free, loaded].map(|servo| measure(&camera.path(&servo, rng)))
     };
     let mut stall_torques = Vec::new();
     for _ in 0..30 {
@@ -164,13 +176,18 @@ fn a_load_that_does_not_slow_the_servo_gives_no_torque() {
     let mut rng = Rng::with_seed(3);
     let measurements = [0, 1].map(|_| {
         let path = AngleCamera::phone(120.0).path(&Servo::default(), &mut rng);
-        MeasuredServo::of(&path, JIG).expect("the servo can be measured")
+        measure(&path)
     });
     let trouble = measurements[0]
         .stall_torque(&measurements[1], 19.6)
         .expect_err("the load does not slow the servo");
     let message = trouble.to_string();
     assert!(message.contains("take a heavier weight"), "{message}");
+}
+
+/// Measures a servo by the path of its card.
+fn measure(path: &[PathPoint]) -> MeasuredServo {
+    MeasuredServo::of(path, JIG).expect("the servo can be measured")
 }
 
 /// The reason why a path cannot be measured.
@@ -185,9 +202,7 @@ fn a_servo_that_turns_the_wrong_way_has_a_negative_gain() {
         ..Servo::default()
     };
     let path = AngleCamera::phone(120.0).path(&servo, &mut Rng::with_seed(4));
-    let gain = MeasuredServo::of(&path, JIG)
-        .expect("the servo can be measured")
-        .gain;
+    let gain = measure(&path).gain;
     assert!((gain.value + 1.05).abs() < 2.0 * gain.error, "{gain:?}");
 }
 
@@ -198,38 +213,31 @@ fn if_no_small_step_moves_the_servo_only_the_largest_ignored_step_is_known() {
         ..Servo::default()
     };
     let path = AngleCamera::phone(60.0).path(&servo, &mut Rng::with_seed(5));
-    let dead_band = MeasuredServo::of(&path, JIG)
-        .expect("the servo can be measured")
-        .dead_band;
-    assert_eq!(
-        (dead_band.width, dead_band.largest_ignored_step),
-        (None, 3.0)
-    );
+    let dead_band = measure(&path).dead_band;
+    assert_eq!(dead_band.width, None);
+    assert_eq!(dead_band.largest_ignored_step, 3.0);
 }
 
 #[test]
 fn a_horn_that_does_not_follow_all_steps_is_refused_with_the_reason() {
     let mut rng = Rng::with_seed(6);
     let mut angle = 0.0;
-    let mut path_of = |turn: &mut dyn FnMut(f64) -> f64| -> Vec<PathPoint> {
-        (0..60 * 55)
-            .map(|i| {
-                angle += turn(f64::from(i) / 60.0);
-                point_at(f64::from(i) / 60.0, angle)
-            })
-            .collect()
+    let mut path_of = |turn: fn(f64) -> f64| -> Vec<PathPoint> {
+        let times = (0..60 * 55).map(|i| f64::from(i) / 60.0);
+        let turned_point_at = |seconds| {
+            angle += turn(seconds);
+            point_at(seconds, angle)
+        };
+        times.map(turned_point_at).collect()
     };
     assert_eq!(trouble_of(&[]), ServoTrouble::NoTurn { turn: 0.0 });
-    let still_path = path_of(&mut |_| 0.0);
+    let still_path = path_of(|_| 0.0);
     assert_eq!(trouble_of(&still_path), ServoTrouble::NoTurn { turn: 0.0 });
-    let swaying_path = path_of(&mut |seconds| seconds.sin());
+    let swaying_path = path_of(f64::sin);
     assert_eq!(trouble_of(&swaying_path), ServoTrouble::StepMismatch);
     let complete_path = AngleCamera::phone(60.0).path(&Servo::default(), &mut rng);
     let trouble = trouble_of(&complete_path[..complete_path.len() / 2]);
-    assert!(
-        matches!(trouble, ServoTrouble::TooShort { .. }),
-        "{trouble}"
-    );
+    assert_matches!(trouble, ServoTrouble::TooShort { .. });
 }
 
 #[test]
@@ -237,18 +245,13 @@ fn a_film_in_slow_motion_or_with_few_pictures_is_refused_with_the_reason() {
     let mut rng = Rng::with_seed(7);
     let mut path = AngleCamera::phone(240.0).path(&Servo::default(), &mut rng);
     path.iter_mut().for_each(|point| point.seconds *= 4.0);
-    assert_eq!(
-        trouble_of(&path),
-        ServoTrouble::WrongStepInterval { ratio: 4.0 }
-    );
+    let trouble = trouble_of(&path);
+    assert_eq!(trouble, ServoTrouble::WrongStepInterval { ratio: 4.0 });
     let path = AngleCamera::phone(15.0).path(&Servo::default(), &mut rng);
     let trouble = trouble_of(&path);
-    assert!(matches!(trouble, ServoTrouble::TooFewPictures { rate } if (rate - 15.0).abs() < 0.1));
-    assert!(
-        trouble
-            .to_string()
-            .contains("film at 120 pictures a second or more")
-    );
+    assert_matches!(trouble, ServoTrouble::TooFewPictures { rate } if (rate - 15.0).abs() < 0.1);
+    let message = trouble.to_string();
+    assert!(message.contains("film at 120 pictures a second or more"));
 }
 
 #[test]
@@ -261,10 +264,7 @@ fn a_slew_limit_below_the_rate_of_the_servo_is_not_taken_for_its_rate() {
     let path = AngleCamera::phone(120.0).path(&servo, &mut Rng::with_seed(8));
     let trouble = MeasuredServo::of(&path, Jig { slew, ..JIG })
         .expect_err("the servo is as fast as the slew limit");
-    assert!(
-        matches!(trouble, ServoTrouble::AtSlewLimit { .. }),
-        "{trouble}"
-    );
+    assert_matches!(trouble, ServoTrouble::AtSlewLimit { .. });
 }
 
 /// Run by `make measure-test`.
@@ -288,20 +288,15 @@ fn in_at_least_85_percent_of_rendered_films_the_true_value_lies_within_two_stand
                     .expect("the picture fits the film");
             });
             let analysed_film = film.analyse(setup).expect("the film can be analysed");
-            let measured =
-                MeasuredServo::of(&analysed_film.path, JIG).expect("the servo can be measured");
-            let width = measured.dead_band.width.expect("the dead band is measured");
+            let measured = measure(&analysed_film.path);
+            let [gain, rate_figure, width] = gain_rate_and_width(&measured, &servo);
             println!(
-                "{rate} pictures a second, shutter {shutter:.4} s: gain {:?} of {:.4}, rate {:?} of {:.1}, dead band {width:?} of {:.2}",
-                measured.gain,
-                servo.gain,
-                measured.rate,
-                servo.steady_rate(),
-                servo.dead_band
+                "{rate} pictures a second, shutter {shutter:.4} s: gain {:?} of {:.4}, rate {:?} of {:.1}, dead band {:?} of {:.2}",
+                gain.0, gain.1, rate_figure.0, rate_figure.1, width.0, servo.dead_band
             );
-            figures[0].push((measured.gain, servo.gain));
-            figures[1].push((measured.rate, servo.steady_rate()));
-            figures[2].push((width, nearest_dead_band(&servo, width.value)));
+            for (figures, figure) in figures.iter_mut().zip([gain, rate_figure, width]) {
+                figures.push(figure);
+            }
         }
     }
     for (i, figures) in figures.iter().enumerate() {
