@@ -1,25 +1,8 @@
 // An Arduino UNO on avr8js: an ATmega328P at 16 MHz, its peripherals and its serial line.
 import {
-  AVRADC,
-  AVRClock,
-  AVREEPROM,
-  AVRIOPort,
-  AVRTimer,
-  AVRUSART,
-  AVRWatchdog,
-  CPU,
-  EEPROMMemoryBackend,
-  adcConfig,
-  avrInstruction,
-  eepromConfig,
-  portBConfig,
-  portCConfig,
-  portDConfig,
-  timer0Config,
-  timer1Config,
-  timer2Config,
-  usart0Config,
-  watchdogConfig,
+  AVRADC, AVRClock, AVREEPROM, AVRIOPort, AVRTimer, AVRUSART, AVRWatchdog, CPU, EEPROMMemoryBackend,
+  adcConfig, avrInstruction, eepromConfig, portBConfig, portCConfig, portDConfig,
+  timer0Config, timer1Config, timer2Config, usart0Config, watchdogConfig,
 } from 'avr8js';
 
 const FREQUENCY_HZ = 16_000_000;

@@ -4,7 +4,7 @@ import test from 'node:test';
 import { skipBusyWaits } from '../src/busy-wait.js';
 import { corrections } from '../src/corrections/index.js';
 import { addReceiveBuffer } from '../src/receive-buffer.js';
-import { makeUno } from './program.js';
+import { makeUno, runProgram, stateOf } from './program.js';
 
 // The program waits for a byte, then twice for timer 1, each time by other instructions. It stores the byte and the
 // timer's counts in SRAM from X on. Meanwhile interrupts occur at changing intervals.
@@ -76,7 +76,7 @@ function stateAfter(extraCorrections) {
   const board = makeUno([...corrections, addReceiveBuffer, ...extras], PROGRAM);
   for (let byte = 1; byte <= 40; byte++) board.cpu.addClockEvent(() => board.receive(byte), 3989 * byte);
   board.run(170_001);
-  return { cycles: board.cpu.cycles, pc: board.cpu.pc, data: [...board.cpu.data], jumps };
+  return { ...stateOf(board), jumps };
 }
 
 test('a program that waits for flags has the same state at the same cycle, and its iterations are skipped', () => {
@@ -90,10 +90,8 @@ test('a program that waits for flags has the same state at the same cycle, and i
 test('no iteration of a loop that waits for a count is skipped', () => {
   const source = PROGRAM.replace('lds r24, 0xc0 ', 'lds r24, 0x84 ');
   assert.notEqual(source, PROGRAM);
-  const [slow, fast] = [[], [skipBusyWaits]].map((extraCorrections) => {
-    const board = makeUno([...corrections, addReceiveBuffer, ...extraCorrections], source);
-    board.run(50_001);
-    return { cycles: board.cpu.cycles, pc: board.cpu.pc, data: [...board.cpu.data] };
-  });
+  const [slow, fast] = [[], [skipBusyWaits]].map((extraCorrections) =>
+    stateOf(runProgram([...corrections, addReceiveBuffer, ...extraCorrections], source, 50_001)),
+  );
   assert.deepEqual(fast, slow);
 });

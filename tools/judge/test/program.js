@@ -19,6 +19,9 @@ export function runProgram(corrections, source, endCycle) {
   return board;
 }
 
+/** Returns the state of a board's processor: its cycle, its program counter and its memory. */
+export const stateOf = ({ cpu }) => ({ cycles: cpu.cycles, pc: cpu.pc, data: [...cpu.data] });
+
 /** Returns the message of a test that fails because avr8js no longer has a fault. */
 export const fixedMessage = (file) =>
   `avr8js has fixed this fault: remove tools/judge/src/corrections/${file}, its test and its line in docs/judges.md`;
