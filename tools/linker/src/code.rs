@@ -27,16 +27,10 @@ impl Code {
     /// Decodes the code; `None` if it ends inside an instruction. Also `None` if a jump has no reference: the jump's
     /// target is then unknown, so nothing may be moved.
     pub fn decode(bytes: &[u8], references: Vec<Reference>) -> Option<Self> {
-        let word_at = |offset: usize| {
-            Some(u16::from_le_bytes([
-                *bytes.get(offset)?,
-                *bytes.get(offset + 1)?,
-            ]))
-        };
         let mut instructions = Vec::new();
         let mut offset = 0;
         while offset < bytes.len() {
-            let first_word = word_at(offset)?;
+            let first_word = u16::from_le_bytes(*bytes[offset..].first_chunk()?);
             instructions.push(PlacedInstruction {
                 offset: offset as u64,
                 first_word,

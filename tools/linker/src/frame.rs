@@ -144,11 +144,9 @@ impl Frame {
             }],
         };
         let mut edits = vec![replacement(0, self.prologue_size, CALL, routines.save)];
-        edits.extend(
-            self.epilogues
-                .iter()
-                .map(|(offset, size)| replacement(*offset, *size, JMP, routines.restore)),
-        );
+        for (offset, size) in &self.epilogues {
+            edits.push(replacement(*offset, *size, JMP, routines.restore));
+        }
         edits
     }
 }
@@ -215,7 +213,7 @@ fn epilogue_length(
     local_bytes: u8,
     has_locals: bool,
 ) -> Option<usize> {
-    let mut words = code.words_from(index).peekable();
+    let mut words = code.words_from(index);
     let mut count = 0;
     if has_locals {
         let local_word = u16::from(local_bytes);
@@ -232,17 +230,13 @@ fn epilogue_length(
             }
             count += 1;
         }
-        for word in WRITE_STACK_POINTER {
-            if words.next()? != word {
-                return None;
-            }
+        let restoring_words = words.by_ref().take(WRITE_STACK_POINTER.len());
+        if !restoring_words.eq(WRITE_STACK_POINTER) {
+            return None;
         }
         count += WRITE_STACK_POINTER.len();
     }
-    for register in registers.iter().rev() {
-        if popped_register(words.next()?) != Some(*register) {
-            return None;
-        }
-    }
-    (words.next()? == RET).then_some(count + registers.len() + 1)
+    let popped_registers = words.by_ref().take(registers.len()).map(popped_register);
+    let are_popped = popped_registers.eq(registers.iter().rev().copied().map(Some));
+    (are_popped && words.next()? == RET).then_some(count + registers.len() + 1)
 }

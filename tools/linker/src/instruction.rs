@@ -21,21 +21,13 @@ pub const fn is_two_words(word: u16) -> bool {
 }
 
 /// Returns the register that a `push` pushes; `None` for any other instruction.
-pub const fn pushed_register(word: u16) -> Option<u8> {
-    if word & 0xfe0f == 0x920f {
-        Some((word >> 4 & 0x1f) as u8)
-    } else {
-        None
-    }
+pub fn pushed_register(word: u16) -> Option<u8> {
+    (word & 0xfe0f == 0x920f).then_some((word >> 4 & 0x1f) as u8)
 }
 
 /// Returns the register that a `pop` pops; `None` for any other instruction.
-pub const fn popped_register(word: u16) -> Option<u8> {
-    if word & 0xfe0f == 0x900f {
-        Some((word >> 4 & 0x1f) as u8)
-    } else {
-        None
-    }
+pub fn popped_register(word: u16) -> Option<u8> {
+    (word & 0xfe0f == 0x900f).then_some((word >> 4 & 0x1f) as u8)
 }
 
 /// Returns the instruction `ldi r26, value`.

@@ -129,23 +129,18 @@ impl Object<'_> {
 
     /// Returns the references of a section's bytes.
     fn references(&self, section: SectionId) -> Vec<Reference> {
-        let mut references = Vec::new();
-        for table in &self.0.sections {
-            if let (Some(target_section), SectionData::Relocation(relocations)) =
-                (table.sh_info_section, &table.data)
-                && target_section == section
-            {
-                references.extend(relocations.iter().filter_map(|relocation| {
-                    Some(Reference {
-                        offset: relocation.r_offset,
-                        kind: relocation.r_type,
-                        symbol: relocation.symbol?,
-                        addend: relocation.r_addend,
-                    })
-                }));
-            }
-        }
-        references
+        let tables = self.0.sections.iter();
+        let tables = tables.filter(|table| table.sh_info_section == Some(section));
+        let reference_of = |relocation: &Relocation| {
+            Some(Reference {
+                offset: relocation.r_offset,
+                kind: relocation.r_type,
+                symbol: relocation.symbol?,
+                addend: relocation.r_addend,
+            })
+        };
+        let relocations = tables.flat_map(relocations_of);
+        relocations.filter_map(reference_of).collect()
     }
 
     fn bytes(&self, section: SectionId) -> Vec<u8> {
@@ -175,17 +170,14 @@ impl Object<'_> {
     fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
-            if let SectionData::Relocation(relocations) = &table.data {
-                let own_edit = edit.filter(|_| table.sh_info_section == Some(section));
-                let offsets = relocations.iter().filter_map(|relocation| {
-                    let offset = relocation.r_offset;
-                    let is_replaced =
-                        own_edit.is_some_and(|edit| edit.offset == offset || edit.covers(offset));
-                    let symbol = relocation.symbol.filter(|_| !is_replaced)?;
-                    self.symbol_offset(section, symbol, relocation.r_addend)
-                });
-                targets.extend(offsets);
-            }
+            let own_edit = edit.filter(|_| table.sh_info_section == Some(section));
+            targets.extend(relocations_of(table).iter().filter_map(|relocation| {
+                let offset = relocation.r_offset;
+                let is_replaced =
+                    own_edit.is_some_and(|edit| edit.offset == offset || edit.covers(offset));
+                let symbol = relocation.symbol.filter(|_| !is_replaced)?;
+                self.symbol_offset(section, symbol, relocation.r_addend)
+            }));
         }
         targets
     }
@@ -267,6 +259,14 @@ impl Object<'_> {
         let code_section = self.0.sections.get_mut(section);
         code_section.sh_size = bytes.len() as u64;
         code_section.data = SectionData::Data(bytes.into());
+    }
+}
+
+/// Returns the relocations of a section; none if it is no table of relocations.
+fn relocations_of<'a>(section: &'a Section) -> &'a [Relocation] {
+    match &section.data {
+        SectionData::Relocation(relocations) => relocations,
+        _ => &[],
     }
 }
 

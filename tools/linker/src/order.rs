@@ -119,29 +119,18 @@ fn move_piece(order: &mut [usize], from: usize, to: usize) {
 mod tests {
     use super::*;
 
+    fn call(from: usize, offset: u32, to: usize) -> Call {
+        Call { from, offset, to }
+    }
+
     /// Returns 21 pieces: each of the first ten calls the piece ten places further on, and the first piece also calls
     /// the last one.
     fn pieces_in_pairs() -> Pieces {
-        let mut pieces = Pieces {
-            sizes: vec![700; 20],
-            calls: Vec::new(),
-        };
-        pieces.sizes.push(0);
-        for from in 0..10 {
-            let to = from + 10;
-            pieces.calls.push(Call {
-                from,
-                offset: 100,
-                to,
-            });
-        }
-        let call = Call {
-            from: 0,
-            offset: 200,
-            to: 20,
-        };
-        pieces.calls.push(call);
-        pieces
+        let mut sizes = vec![700; 20];
+        sizes.push(0);
+        let mut calls: Vec<Call> = (0..10).map(|from| call(from, 100, from + 10)).collect();
+        calls.push(call(0, 200, 20));
+        Pieces { sizes, calls }
     }
 
     #[test]
@@ -167,11 +156,7 @@ mod tests {
         assert!(Pieces::default().find_order().is_empty());
         let pieces = Pieces {
             sizes: vec![9000, 0],
-            calls: vec![Call {
-                from: 0,
-                offset: 0,
-                to: 1,
-            }],
+            calls: vec![call(0, 0, 1)],
         };
         assert_eq!(pieces.find_order(), [0, 1]);
         assert_eq!(pieces.out_of_reach_count(&[0, 1]), 1);

@@ -71,7 +71,8 @@ impl Object<'_> {
                     None => other_files_piece,
                 };
                 if is_call(&&reference) && from != to {
-                    let offset = if from == middle_piece {
+                    let is_in_middle = from == middle_piece;
+                    let offset = if is_in_middle {
                         0
                     } else {
                         reference.offset as u32
