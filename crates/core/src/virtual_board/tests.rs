@@ -30,10 +30,8 @@ fn a_frame_is_played_after_it_is_taken_over_and_repeats_while_main_is_late() {
         "the frame has not been taken over yet"
     );
     board.pass_time(1);
-    assert_eq!(
-        board.started_pulses().0.map(|width| width.0),
-        [1_000, 0, 0, 0]
-    );
+    let widths = board.started_pulses().0.map(|width| width.0);
+    assert_eq!(widths, [1_000, 0, 0, 0]);
     for _ in 0..4 {
         board.pass_time(19);
         assert_eq!(board.started_pulses(), pulses);
@@ -41,10 +39,8 @@ fn a_frame_is_played_after_it_is_taken_over_and_repeats_while_main_is_late() {
     }
     board.submit(Pulses([0, 999, 63_001, 1_000].map(PulseWidth)));
     board.pass_time(20 + 19);
-    assert_eq!(
-        board.started_pulses().0.map(|width| width.0),
-        [0, 0, 0, 1_000]
-    );
+    let widths = board.started_pulses().0.map(|width| width.0);
+    assert_eq!(widths, [0, 0, 0, 1_000]);
 }
 
 #[test]
@@ -61,28 +57,16 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() 
         NO_PULSES,
         "no pulse begins any more"
     );
-    let (pose, frames) = (
-        *hung_robot.motion().pose(),
-        hung_robot.motion().frame_count(),
-    );
+    let pose = *hung_robot.motion().pose();
+    let frames = hung_robot.motion().frame_count();
     hung_robot.settle();
-    assert_eq!(
-        hung_robot.motion().frame_count(),
-        frames,
-        "the main loop does not continue"
-    );
+    let new_frames = hung_robot.motion().frame_count();
+    assert_eq!(new_frames, frames, "the main loop does not continue");
     assert!(hung_robot.stall(1), "the watchdog resets the processor");
     assert!(!hung_robot.board.are_pulses_ended());
-    assert_eq!(hung_robot.board.last_restart().cause, Cause::Watchdog);
-    assert_eq!(hung_robot.board.last_restart().reset_count, 1);
-    assert_eq!(
-        hung_robot
-            .board
-            .last_restart()
-            .stance_before
-            .map(|stance| stance.pose),
-        Some(pose)
-    );
+    let restart = hung_robot.board.last_restart();
+    assert_eq!((restart.cause, restart.reset_count), (Cause::Watchdog, 1));
+    assert_eq!(restart.stance_before.map(|stance| stance.pose), Some(pose));
 }
 
 #[test]
@@ -93,17 +77,11 @@ fn a_reset_keeps_the_pose_and_a_loss_of_power_does_not() {
     let pose = *robot.motion().pose();
     robot.board.send(b"stand\r");
     robot.reset(Cause::External);
+    let stance_before = robot.board.last_restart().stance_before;
+    assert_eq!(stance_before.map(|stance| stance.pose), Some(pose));
+    let unread_count = robot.board.unread_count();
     assert_eq!(
-        robot
-            .board
-            .last_restart()
-            .stance_before
-            .map(|stance| stance.pose),
-        Some(pose)
-    );
-    assert_eq!(
-        robot.board.unread_count(),
-        0,
+        unread_count, 0,
         "bytes that the main loop had not read are lost"
     );
     robot.lose_power(None);
@@ -120,11 +98,8 @@ fn power_lost_during_a_write_changes_only_the_byte_that_is_being_written() {
     assert_eq!(board.memory.bytes()[17], 0xb7);
     board_after_write.pass_time(4);
     board_after_write.lose_power(Some(0xb7));
-    assert_eq!(
-        board_after_write.memory.bytes()[17],
-        0x35,
-        "the write had time to end"
-    );
+    let byte = board_after_write.memory.bytes()[17];
+    assert_eq!(byte, 0x35, "the write had time to end");
     let is_unwritten = |address: &usize| *address != 17;
     let is_erased = |address: usize| board.memory.bytes()[address] == ERASED;
     assert!((0..1024).filter(is_unwritten).all(is_erased));
@@ -152,14 +127,11 @@ fn no_reading_is_given_before_every_voltage_has_been_measured() {
         let mut converter = Converter::new(true_reading, has_rail);
         for frame in 1..40 {
             let reading = converter.advance_frame();
-            assert_eq!(
-                reading.reference == 221,
-                frame >= first_frame,
-                "{has_rail} {frame}"
-            );
+            let is_given = frame >= first_frame;
+            assert_eq!(reading.reference == 221, is_given, "{has_rail} {frame}");
             assert_eq!(
                 reading.rail == 393,
-                has_rail && frame >= first_frame,
+                has_rail && is_given,
                 "{has_rail} {frame}"
             );
         }
@@ -240,11 +212,7 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
         running_robot.run_frames(60);
         let pulses_before_rest = *running_robot.motion().sent_pulses();
         for servo in 1..=4 {
-            assert!(
-                running_robot
-                    .send_line(&format!("trim {servo} 6"))
-                    .starts_with("ok")
-            );
+            running_robot.expect_accepted(&format!("trim {servo} 6"));
         }
         if let Some(cause) = reset_cause {
             running_robot.reset(cause);

@@ -14,6 +14,14 @@ fn parse_line(line: &str) -> Result<Command, LineError> {
 }
 
 /// Returns the command that starts a gait without a number of cycles.
+/// Checks that each of the lines between the bars is refused for this reason.
+#[track_caller]
+fn assert_each_refused(lines: &str, line_error: LineError) {
+    for line in lines.split('|') {
+        assert_eq!(parse_line(line), Err(line_error), "{line}");
+    }
+}
+
 fn command_of_gait(gait: GaitId) -> Command {
     Command::Order(Order::Gait(gait, 0))
 }
@@ -72,19 +80,12 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         let (text, example) = (word.text(), word.example());
         let command = parse(example.as_bytes(), &robot);
         assert!(command.is_ok(), "{example}");
-        assert_eq!(
-            parse_with_three_priorities(example, &robot),
-            [command; 3],
-            "{example}"
-        );
-
         let longer_name = std::format!("{text} on");
         let robot_with_longer = Sample::paper().with_gait(&longer_name);
-        assert_eq!(
-            parse_with_three_priorities(example, &robot_with_longer),
-            [command; 3],
-            "{example}"
-        );
+        for robot in [&robot, &robot_with_longer] {
+            let commands = parse_with_three_priorities(example, robot);
+            assert_eq!(commands, [command; 3], "{example}");
+        }
 
         let robot_with_both = Sample::paper().with_gait(text).with_gait(&longer_name);
         let first_yielding_indices = [0, Word::Cal as usize, Word::ALL.len()];
@@ -101,17 +102,13 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         ] {
             let word_result = parse(line.as_bytes(), &robot);
             let expected_results = first_yielding_indices.map(|first_yielding_index| {
-                if word_index < first_yielding_index {
-                    word_result
-                } else {
-                    gait_result
+                match word_index < first_yielding_index {
+                    true => word_result,
+                    false => gait_result,
                 }
             });
-            assert_eq!(
-                parse_with_three_priorities(line, &robot_with_both),
-                expected_results,
-                "{line}"
-            );
+            let results = parse_with_three_priorities(line, &robot_with_both);
+            assert_eq!(results, expected_results, "{line}");
         }
     }
 }
@@ -173,13 +170,7 @@ fn a_missing_malformed_or_surplus_argument_is_answered_by_the_usage() {
             "deadman|deadman -1|deadman 1.5|deadman 1 2",
         ),
     ] {
-        for line in lines.split('|') {
-            assert_eq!(
-                parse_line(line),
-                Err(LineError::WrongArguments(usage)),
-                "{line}"
-            );
-        }
+        assert_each_refused(lines, LineError::WrongArguments(usage));
     }
 }
 
@@ -203,13 +194,7 @@ fn a_setting_out_of_range_is_answered_by_the_range() {
             "deadman 60001|deadman 65535|deadman 999999",
         ),
     ] {
-        for line in lines.split('|') {
-            assert_eq!(
-                parse_line(line),
-                Err(LineError::OutOfRange(range)),
-                "{line}"
-            );
-        }
+        assert_each_refused(lines, LineError::OutOfRange(range));
     }
 }
 
@@ -238,9 +223,7 @@ fn a_line_that_only_resembles_the_name_of_a_gait_is_an_error() {
             "swayleft|sway-left|sways|swa|left|s",
         ),
     ] {
-        for line in lines.split('|') {
-            assert_eq!(parse_line(line), Err(line_error), "{line}");
-        }
+        assert_each_refused(lines, line_error);
     }
 }
 
@@ -266,11 +249,9 @@ fn every_gait_accepts_every_count_from_1_to_999_and_no_other() {
     for name in GAIT_NAMES {
         let read = |count: &str| parse(format!("{name} {count}").as_bytes(), &robot);
         for count in (0..=70_000u32).chain([655_360, 655_361, 99_999_999]) {
+            let order = Order::Gait(robot.gait_id(name), count as u16);
             let expected = match count {
-                1..=999 => Ok(Command::Order(Order::Gait(
-                    robot.gait_id(name),
-                    count as u16,
-                ))),
+                1..=999 => Ok(Command::Order(order)),
                 _ => Err(LineError::WrongArguments(Text::CountUsage)),
             };
             assert_eq!(read(&count.to_string()), expected, "{name} {count}");
@@ -306,13 +287,7 @@ fn a_line_that_begins_with_no_word_and_no_gait_is_an_unknown_command() {
 #[test]
 fn a_command_that_takes_no_argument_refuses_one() {
     let lines = "stop now|rest 5|help me|? ?|status all|cal 1|save it|load 1|factory reset";
-    for line in lines.split('|') {
-        assert_eq!(
-            parse_line(line),
-            Err(LineError::UnexpectedArgument),
-            "{line}"
-        );
-    }
+    assert_each_refused(lines, LineError::UnexpectedArgument);
 }
 
 #[test]
@@ -321,10 +296,8 @@ fn speed_and_watch_require_one_whole_number() {
         "", " fast", " 5o", " 50%", " 50.5", " -50", " +50", " 50 60", " 0x20", " 5 0",
     ] {
         for (word, usage) in [("speed", Text::SpeedUsage), ("watch", Text::WatchUsage)] {
-            assert_eq!(
-                parse_line(&format!("{word}{argument}")),
-                Err(LineError::WrongArguments(usage))
-            );
+            let line = format!("{word}{argument}");
+            assert_each_refused(&line, LineError::WrongArguments(usage));
         }
     }
 }
@@ -343,10 +316,8 @@ fn every_speed_and_watch_interval_in_range_is_accepted_and_no_other() {
         };
         assert_eq!(parse_with_number("watch", number), expected_watch);
     }
-    assert_eq!(
-        parse_line("speed 99999999999999999999"),
-        Err(LineError::OutOfRange(Text::SpeedRange))
-    );
+    let line = "speed 99999999999999999999";
+    assert_each_refused(line, LineError::OutOfRange(Text::SpeedRange));
 }
 
 fn parse_with_number(word: &str, number: u32) -> Result<Command, LineError> {
@@ -373,8 +344,6 @@ fn numbers_around_sixteen_bits_saturate_instead_of_wrapping() {
         assert_eq!(parsed, Some((value, false)));
     }
     assert_eq!(parse_number(b"12x", Syntax::Whole), None);
-    assert_eq!(
-        parse_number(b"655.36", Syntax::Hundredths),
-        Some((u16::MAX, false))
-    );
+    let parsed = parse_number(b"655.36", Syntax::Hundredths);
+    assert_eq!(parsed, Some((u16::MAX, false)));
 }

@@ -29,8 +29,9 @@ use crate::sample::{GAIT_NAMES, SLOW_PACE, Sample};
 use crate::step::Step;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_answer};
 use dialogue::{
-    Dialogue, neutral_pose_text, parse_pairs, run_frame_and_read_widths, set_supply,
-    wake_asymmetric_robot, wake_robot,
+    Dialogue, activity_name, assert_status, neutral_pose_text, parse_pairs,
+    run_frame_and_read_widths, set_supply, start_asymmetric_robot, wake_asymmetric_robot,
+    wake_robot,
 };
 
 /// The command for the neutral pose of [`Sample::asymmetric`].
@@ -61,15 +62,10 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
         NEUTRAL_COMMAND,
     ];
     for command in commands.into_iter().chain(GAIT_NAMES) {
-        assert_eq!(
-            wake_asymmetric_robot().send_line(command),
-            format!("ok {command}")
-        );
+        wake_asymmetric_robot().expect_accepted(command);
         let upper_case_line = format!("  {}\t", command.to_uppercase());
-        assert_eq!(
-            wake_asymmetric_robot().send_line(&upper_case_line),
-            format!("ok {command}")
-        );
+        let answer = wake_asymmetric_robot().send_line(&upper_case_line);
+        assert_eq!(answer, format!("ok {command}"));
     }
 }
 
@@ -153,12 +149,10 @@ fn each_hold_is_reported_once_and_shown_by_status_until_the_robot_moves_again() 
         printed_lines[0].contains(" margin of ") || printed_lines[0].contains(" slider is at ")
     );
     assert!(dialogue.run_frames(100).is_empty());
-    assert_eq!(dialogue.status_value("guard"), "held");
-    assert_eq!(dialogue.status_value("fault"), "guard");
+    assert_status(&mut dialogue, &[("guard", "held"), ("fault", "guard")]);
     dialogue.send_line("stand");
     dialogue.run_frames(1);
-    assert_eq!(dialogue.status_value("guard"), "clear");
-    assert_eq!(dialogue.status_value("fault"), "none");
+    assert_status(&mut dialogue, &[("guard", "clear"), ("fault", "none")]);
     dialogue.run_frames(100);
     dialogue.send_line("stray");
     assert_eq!(

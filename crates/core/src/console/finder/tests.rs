@@ -40,10 +40,8 @@ fn a_rate_that_has_carried_a_command_survives_31_wrong_bytes() {
         assert!(finder.note_command(4));
         assert_eq!(feed_and_pause(&mut finder, &[GARBLED_BYTE; 31]), None);
     }
-    assert_eq!(
-        feed_and_pause(&mut finder, &[GARBLED_BYTE]),
-        Some(BaudRate::Fastest)
-    );
+    let new_rate = feed_and_pause(&mut finder, &[GARBLED_BYTE]);
+    assert_eq!(new_rate, Some(BaudRate::Fastest));
     assert_eq!(
         feed_and_pause(&mut finder, &[GARBLED_BYTE; 4]),
         Some(BaudRate::Half),
@@ -54,10 +52,8 @@ fn a_rate_that_has_carried_a_command_survives_31_wrong_bytes() {
 #[test]
 fn long_noise_changes_the_rate_once_in_the_pause_after_it() {
     let mut finder = RateFinder::new(BaudRate::Fastest);
-    assert_eq!(
-        feed_and_pause(&mut finder, &[GARBLED_BYTE; 10_000]),
-        Some(BaudRate::Half)
-    );
+    let new_rate = feed_and_pause(&mut finder, &[GARBLED_BYTE; 10_000]);
+    assert_eq!(new_rate, Some(BaudRate::Half));
     assert_eq!(
         feed_and_pause(&mut finder, &[]),
         None,

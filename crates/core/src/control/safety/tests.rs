@@ -81,10 +81,9 @@ fn boot_is_requested_once_three_seconds_after_power_on() {
     let mut safety = Safety::default();
     for frame in 1..=1000 {
         let reaction = check_still_frame(&mut safety, &HEALTHY_BOARD);
-        let expected_reaction = if frame == 150 {
-            Reaction::Boot
-        } else {
-            Reaction::None
+        let expected_reaction = match frame {
+            150 => Reaction::Boot,
+            _ => Reaction::None,
         };
         assert_eq!(reaction, expected_reaction, "{frame}");
     }

@@ -75,16 +75,23 @@ fn rows_of(event: Event) -> Vec<String> {
     groups.iter().map(row_of).collect()
 }
 
+#[track_caller]
+fn assert_in_docs(table: &str) {
+    assert!(
+        FAULTS_PAGE.contains(table),
+        "docs/faults.md must contain:\n{table}"
+    );
+}
+
 #[test]
 fn the_docs_print_the_table_of_events() {
     let rows: Vec<String> = Event::ALL.into_iter().flat_map(rows_of).collect();
     let header =
         "| what happens | supply | resting | standing, holding, moving to a pose | walking |";
-    let table = format!("{header}\n|---|---|---|---|---|\n{}\n", rows.join("\n"));
-    assert!(
-        FAULTS_PAGE.contains(&table),
-        "docs/faults.md must contain:\n{table}"
-    );
+    assert_in_docs(&format!(
+        "{header}\n|---|---|---|---|---|\n{}\n",
+        rows.join("\n")
+    ));
 }
 
 #[test]
@@ -125,11 +132,10 @@ fn the_docs_print_the_table_of_resets() {
         }
     }
     let header = "| reset | maybe by the supply | nothing known | rested | held | fault |";
-    let table = format!("{header}\n|---|---|---|---|---|---|\n{}\n", rows.join("\n"));
-    assert!(
-        FAULTS_PAGE.contains(&table),
-        "docs/faults.md must contain:\n{table}"
-    );
+    assert_in_docs(&format!(
+        "{header}\n|---|---|---|---|---|---|\n{}\n",
+        rows.join("\n")
+    ));
 }
 
 #[test]
@@ -149,13 +155,7 @@ fn a_falling_supply_never_allows_a_command_that_a_higher_supply_refuses() {
     for event in [Event::Stand, Event::Move, Event::Save, Event::BootDue] {
         for state in State::ALL {
             let is_obeyed = |(supply, _)| response(event, supply, state) == Response::Obey;
-            let are_obeyed = [
-                SUPPLY_LEVELS[0],
-                SUPPLY_LEVELS[2],
-                SUPPLY_LEVELS[3],
-                SUPPLY_LEVELS[4],
-            ]
-            .map(is_obeyed);
+            let are_obeyed = [0, 2, 3, 4].map(|index| is_obeyed(SUPPLY_LEVELS[index]));
             assert!(
                 are_obeyed.is_sorted_by(|higher, lower| higher >= lower),
                 "{event:?}"

@@ -70,11 +70,8 @@ fn every_voltage_is_rounded_down_to_hundredths_of_a_volt() {
             let centivolts = Voltage::of_board(reading, &supplies).centivolts();
             // Higher voltages become 81.91 V.
             let expected_centivolts = exact_centivolts.floor().min(8191.0);
-            assert_eq!(
-                f64::from(centivolts),
-                expected_centivolts,
-                "{reference} {reference_mv}"
-            );
+            let case = (reference, reference_mv);
+            assert_eq!(f64::from(centivolts), expected_centivolts, "{case:?}");
             let rail_centivolts = Voltage::of_rail(reading, &SUPPLIES_WITH_RAIL).centivolts();
             let exact_rail_centivolts = 700.0 * 2200.0 / f64::from(reference) / 10.0;
             assert_eq!(
@@ -108,12 +105,9 @@ fn a_falling_supply_reaches_each_level_after_six_frames() {
         assert_eq!(measure_board_until_change(&mut supply, volts), (6, level));
     }
     let mut supply = Supply::default();
-    let change = measure_board_until_change(&mut supply, 3.9);
-    assert_eq!(
-        change,
-        (6, Level::Rest),
-        "a fall through all levels also takes six frames"
-    );
+    let (frames, level) = measure_board_until_change(&mut supply, 3.9);
+    assert_eq!(level, Level::Rest);
+    assert_eq!(frames, 6, "a fall through all levels also takes six frames");
 }
 
 #[test]
@@ -126,10 +120,9 @@ fn after_six_worse_readings_the_level_nearest_to_the_current_one_counts() {
         for outlier_frame in 0..6 {
             let mut supply = Supply::default();
             for frame in 0..6 {
-                let volts = if frame == outlier_frame {
-                    outlier_volts
-                } else {
-                    usual_volts
+                let volts = match frame == outlier_frame {
+                    true => outlier_volts,
+                    false => usual_volts,
                 };
                 supply.add_reading(reading_at(volts, 0.0), &SUPPLIES);
             }

@@ -66,23 +66,16 @@ fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
                 let is_rail_unused =
                     other_pins_of(servo).all(|other_pin| u16::from(other_pin) != rail_pin);
                 let is_valid_pin = is_usable_pin(pin) && !is_used && is_rail_unused;
-                assert_eq!(
-                    is_accepted,
-                    is_valid_pin,
-                    "A{} on {pin}, the rail on {rail_pin}",
-                    servo + 1
-                );
+                let case = (servo, pin, rail_pin);
+                assert_eq!(is_accepted, is_valid_pin, "{case:?}");
             }
         }
     }
     let pins = Sample::asymmetric().content.pins;
     for rail_pin in 0..=u8::MAX {
         let is_valid_rail = (14..=19).contains(&rail_pin) && !pins.contains(&rail_pin);
-        assert_eq!(
-            is_accepted_with(offset!(rail_pin), rail_pin.into()),
-            rail_pin == 0 || is_valid_rail,
-            "{rail_pin}"
-        );
+        let is_accepted = is_accepted_with(offset!(rail_pin), rail_pin.into());
+        assert_eq!(is_accepted, rail_pin == 0 || is_valid_rail, "{rail_pin}");
     }
 }
 
@@ -98,35 +91,24 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
             ChangedSection(content.section_bytes()).is_accepted()
         };
         assert!(is_accepted_with_change(&|_| {}));
-        for min_pulse in [7_999, 8_000] {
+        for (min_pulse, is_tolerated) in [(7_998, false), (7_999, true), (8_000, true)] {
             // The shortest pulse is that of the travel's clockwise limit.
             let set_shortest_pulse = |calibration: &mut Calibration| {
                 let pulse_below_neutral =
                     calibration.neutral_width.0 - calibration.clamped_width(calibration.travel_min);
                 calibration.neutral_width.0 = min_pulse + pulse_below_neutral;
             };
-            assert!(
-                is_accepted_with_change(&set_shortest_pulse),
-                "{servo} {min_pulse}"
-            );
+            let is_accepted = is_accepted_with_change(&set_shortest_pulse);
+            assert_eq!(is_accepted, is_tolerated, "{servo} {min_pulse}");
         }
-        let set_too_short_pulse = |calibration: &mut Calibration| {
-            let pulse_below_neutral =
-                calibration.neutral_width.0 - calibration.clamped_width(calibration.travel_min);
-            calibration.neutral_width.0 = 7_998 + pulse_below_neutral;
-        };
-        assert!(!is_accepted_with_change(&set_too_short_pulse), "{servo}");
         for (max_pulse, is_tolerated) in [(40_001, true), (40_002, false)] {
             let set_longest_pulse = |calibration: &mut Calibration| {
                 let pulse_above_neutral =
                     calibration.clamped_width(calibration.travel_max) - calibration.neutral_width.0;
                 calibration.neutral_width.0 = max_pulse - pulse_above_neutral;
             };
-            assert_eq!(
-                is_accepted_with_change(&set_longest_pulse),
-                is_tolerated,
-                "{servo} {max_pulse}"
-            );
+            let is_accepted = is_accepted_with_change(&set_longest_pulse);
+            assert_eq!(is_accepted, is_tolerated, "{servo} {max_pulse}");
         }
         // The neutral angle is within the travel, even if no gait needs it.
         for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {
@@ -135,26 +117,16 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
             let calibration = &mut content.calibration[servo];
             (calibration.travel_min, calibration.travel_max) = (min, max);
             content.needed_travel[servo] = NeededTravel { min, max };
-            assert_eq!(
-                ChangedSection(content.section_bytes()).is_accepted(),
-                has_neutral,
-                "{travel:?}"
-            );
+            let is_accepted = ChangedSection(content.section_bytes()).is_accepted();
+            assert_eq!(is_accepted, has_neutral, "{travel:?}");
         }
         let needed_travel = Sample::asymmetric().content.needed_travel[servo];
         for (excess, is_within) in [(0, true), (1, false)] {
-            assert_eq!(
-                is_accepted_with_change(
-                    &|calibration| calibration.travel_min.0 = needed_travel.min.0 + excess
-                ),
-                is_within
-            );
-            assert_eq!(
-                is_accepted_with_change(
-                    &|calibration| calibration.travel_max.0 = needed_travel.max.0 - excess
-                ),
-                is_within
-            );
+            let changes: [&dyn Fn(&mut Calibration); 2] = [
+                &|calibration| calibration.travel_min.0 = needed_travel.min.0 + excess,
+                &|calibration| calibration.travel_max.0 = needed_travel.max.0 - excess,
+            ];
+            assert_eq!(changes.map(is_accepted_with_change), [is_within; 2]);
         }
     }
 }
@@ -169,9 +141,7 @@ fn a_section_whose_neutral_pose_is_unsafe_is_refused() {
             1 => content.limits.type1.0 = i16::MAX,
             _ => content.limits.type2.0 = i16::MAX,
         }
-        assert!(
-            !ChangedSection(content.section_bytes()).is_accepted(),
-            "{change}"
-        );
+        let is_accepted = ChangedSection(content.section_bytes()).is_accepted();
+        assert!(!is_accepted, "{change}");
     }
 }

@@ -78,16 +78,16 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     let step = 1.0
         / steps_per_mm(robot.content.sliders[0].scale)
             .min(steps_per_mm(robot.content.sliders[1].scale));
+    let limits = robot.measurements.limits;
+    let type2_error = bounds.max_end_error(|end| end.type2) + Q15_STEP;
+    let type1_error = bounds.max_end_error(bounds::EndErrors::type1) + Q15_STEP;
+    let stroke_error = bounds.sliders[0].max(bounds.sliders[1]) + step;
     let shifted_limits = |sign: f64| kinematics::Limits {
-        type2: robot.measurements.limits.type2
-            + sign * (bounds.max_end_error(|end| end.type2) + Q15_STEP),
-        type1: robot.measurements.limits.type1
-            + sign * (bounds.max_end_error(bounds::EndErrors::type1) + Q15_STEP),
-        leg: robot.measurements.limits.leg + sign * (MAX_DIRECTION_ERROR + Q15_STEP),
-        stroke_min: robot.measurements.limits.stroke_min
-            + sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
-        stroke_max: robot.measurements.limits.stroke_max
-            - sign * (bounds.sliders[0].max(bounds.sliders[1]) + step),
+        type2: limits.type2 + sign * type2_error,
+        type1: limits.type1 + sign * type1_error,
+        leg: limits.leg + sign * (MAX_DIRECTION_ERROR + Q15_STEP),
+        stroke_min: limits.stroke_min + sign * stroke_error,
+        stroke_max: limits.stroke_max - sign * stroke_error,
     };
     if shifted_limits(1.0).is_safe(&solution) {
         Some(true)
@@ -250,10 +250,8 @@ fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
         assert_eq!(limit_clearance.first_hazard(&robot), None, "{margin:?}");
         let value = Sine(limit.0 - 1);
         limit_clearance.margins[index] = value;
-        assert_eq!(
-            limit_clearance.first_hazard(&robot),
-            Some(Hazard::Margin { margin, value })
-        );
+        let hazard = limit_clearance.first_hazard(&robot);
+        assert_eq!(hazard, Some(Hazard::Margin { margin, value }));
     }
 }
 
@@ -282,23 +280,16 @@ fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
     for (index, side) in Side::ALL.into_iter().enumerate().rev() {
         clearance.slider_lengths_sq[index] = 100;
         expected_hazards.push(Hazard::Stroke { side, length: 10 });
-        assert_eq!(
-            clearance.first_hazard(&robot).as_ref(),
-            expected_hazards.last()
-        );
+        let hazard = clearance.first_hazard(&robot);
+        assert_eq!(hazard.as_ref(), expected_hazards.last());
     }
-    for (index, (margin, _)) in margins_with_limits(&robot.limits())
-        .into_iter()
-        .enumerate()
-        .rev()
-    {
+    let margins = margins_with_limits(&robot.limits());
+    for (index, (margin, _)) in margins.into_iter().enumerate().rev() {
         let value = Sine(-1);
         clearance.margins[index] = value;
         expected_hazards.push(Hazard::Margin { margin, value });
-        assert_eq!(
-            clearance.first_hazard(&robot).as_ref(),
-            expected_hazards.last()
-        );
+        let hazard = clearance.first_hazard(&robot);
+        assert_eq!(hazard.as_ref(), expected_hazards.last());
     }
 }
 
@@ -319,12 +310,7 @@ fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
         // The change point is on the x axis of the chassis. Beyond it, the crank's y is negative in the frame of the
         // leg's five-bar.
         let neutral_deg = f64::from(robot.neutral_angles()[servo].0) * 360.0 / 65536.0;
-        let axis_deg = if (90.0..270.0).contains(&neutral_deg) {
-            180.0
-        } else {
-            360.0
-        };
-        let axis_deg = if neutral_deg < 90.0 { 0.0 } else { axis_deg };
+        let axis_deg = 180.0 * (neutral_deg / 180.0).round();
         for (offset_deg, is_positive) in [(-2.0f64, false), (2.0, true)] {
             let direction = (neutral_deg - axis_deg).signum();
             let turn_deg = axis_deg + offset_deg * direction - neutral_deg;

@@ -1,7 +1,5 @@
 //! Tests of saved settings after power cuts, torn bytes and flipped bits.
 
-use std::vec::Vec;
-
 use super::*;
 use crate::memory::record::{ERASED, Progress, RECORD_BYTES};
 use crate::memory::settings::Boot;
@@ -11,8 +9,8 @@ use crate::numbers::units::Sweep;
 use crate::sample::Sample;
 use crate::virtual_board::Eeprom;
 
-fn asymmetric_robot() -> Sample {
-    Sample::asymmetric()
+fn robot_with_blank_memory() -> (Sample, Eeprom) {
+    (Sample::asymmetric(), Eeprom::blank())
 }
 
 /// Makes settings all of whose values depend on `n`, except `boot`.
@@ -35,13 +33,11 @@ fn make_settings(robot: &Sample, n: i16) -> Settings {
 fn save_settings(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
     let mut saved_settings = *settings;
     if let Some(mut record_write) = save(&mut saved_settings, eeprom) {
-        loop {
-            match record_write.advance(saved_settings.bytes(), eeprom) {
-                Progress::InProgress => {}
-                Progress::Done => break,
-                Progress::Failed => panic!("the EEPROM is worn"),
-            }
+        let mut progress = Progress::InProgress;
+        while progress == Progress::InProgress {
+            progress = record_write.advance(saved_settings.bytes(), eeprom);
         }
+        assert!(progress == Progress::Done, "the EEPROM is worn");
     }
     saved_settings
 }
@@ -54,39 +50,29 @@ fn load_settings(robot: &Sample, eeprom: &Eeprom) -> (Settings, SavedState) {
 }
 
 /// Returns the settings with save number 0, so that settings of different saves can be compared.
-fn clear_save_number(settings: &Settings) -> Settings {
-    let mut comparable_settings = *settings;
-    comparable_settings.set_save_number(0);
-    comparable_settings
+fn clear_save_number(mut settings: Settings) -> Settings {
+    settings.set_save_number(0);
+    settings
 }
 
 #[test]
 fn each_of_a_thousand_saves_is_loaded_again() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
-    assert_eq!(
-        load_settings(&robot, &eeprom),
-        (Settings::of(&robot), SavedState::Blank)
-    );
+    let (robot, mut eeprom) = robot_with_blank_memory();
+    let loaded = load_settings(&robot, &eeprom);
+    assert_eq!(loaded, (Settings::of(&robot), SavedState::Blank));
     for n in 0..1000 {
         let new_settings = make_settings(&robot, n % 70);
         let saved_settings = save_settings(&new_settings, &mut eeprom);
-        assert_eq!(
-            clear_save_number(&saved_settings),
-            clear_save_number(&new_settings)
-        );
-        assert_eq!(
-            load_settings(&robot, &eeprom),
-            (saved_settings, SavedState::Latest),
-            "{n}"
-        );
+        let [saved, new] = [saved_settings, new_settings].map(clear_save_number);
+        assert_eq!(saved, new);
+        let loaded = load_settings(&robot, &eeprom);
+        assert_eq!(loaded, (saved_settings, SavedState::Latest), "{n}");
     }
 }
 
 #[test]
 fn unchanged_bytes_are_not_written_again() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     save_settings(&make_settings(&robot, 3), &mut eeprom);
     eeprom.log.clear();
     save_settings(&make_settings(&robot, 3), &mut eeprom);
@@ -107,7 +93,7 @@ fn torn_values(old: u8, new: u8) -> impl Iterator<Item = u8> {
 
 #[test]
 fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
-    let robot = asymmetric_robot();
+    let robot = Sample::asymmetric();
     for save_count in 0..4 {
         let mut eeprom = Eeprom::blank();
         let mut old_settings = Settings::of(&robot);
@@ -144,8 +130,7 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
 
 #[test]
 fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     save_settings(&make_settings(&robot, 1), &mut eeprom);
     save_settings(&make_settings(&robot, 2), &mut eeprom);
     let bytes_before = *eeprom.bytes();
@@ -161,17 +146,20 @@ fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
     }
 }
 
+fn with_flipped_bit(eeprom: &Eeprom, bit: usize) -> Eeprom {
+    let mut bytes = *eeprom.bytes();
+    bytes[bit / 8] ^= 1 << (bit % 8);
+    Eeprom::with_bytes(bytes)
+}
+
 #[test]
 fn any_flipped_bit_leaves_the_last_settings_or_the_previous_ones() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     let previous_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     let last_settings = save_settings(&make_settings(&robot, 2), &mut eeprom);
     let (mut last_count, mut previous_count) = (0, 0);
     for bit in 0..8 * 1024 {
-        let mut bytes = *eeprom.bytes();
-        bytes[bit / 8] ^= 1 << (bit % 8);
-        let (settings, state) = load_settings(&robot, &Eeprom::with_bytes(bytes));
+        let (settings, state) = load_settings(&robot, &with_flipped_bit(&eeprom, bit));
         if settings == last_settings {
             last_count += 1;
         } else {
@@ -189,13 +177,10 @@ fn any_flipped_bit_leaves_the_last_settings_or_the_previous_ones() {
 
 #[test]
 fn any_flipped_bit_leaves_the_only_copy_or_the_settings_of_robot_toml() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     let only_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..8 * 1024 {
-        let mut bytes = *eeprom.bytes();
-        bytes[bit / 8] ^= 1 << (bit % 8);
-        let loaded = load_settings(&robot, &Eeprom::with_bytes(bytes));
+        let loaded = load_settings(&robot, &with_flipped_bit(&eeprom, bit));
         let is_in_content = bit / 8 < 45;
         let is_in_other_copy = (64..109).contains(&(bit / 8));
         let expected_loaded = match (is_in_content, is_in_other_copy) {
@@ -209,8 +194,7 @@ fn any_flipped_bit_leaves_the_only_copy_or_the_settings_of_robot_toml() {
 
 #[test]
 fn settings_for_other_servos_or_of_another_format_are_not_used() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     save_settings(&make_settings(&robot, 1), &mut eeprom);
     let other_robot = robot
         .clone()
@@ -229,26 +213,21 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
 
 #[test]
 fn every_bit_of_the_servos_hash_distinguishes_other_servos() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     save_settings(&make_settings(&robot, 1), &mut eeprom);
     for bit in 0..32 {
         let other_robot = robot
             .clone()
             .with_changes(|content| content.servo_hash ^= 1 << bit);
-        assert_eq!(
-            load_settings(&other_robot, &eeprom).1,
-            SavedState::Foreign,
-            "bit {bit}"
-        );
+        let (_, state) = load_settings(&other_robot, &eeprom);
+        assert_eq!(state, SavedState::Foreign, "bit {bit}");
     }
     assert_eq!(load_settings(&robot, &eeprom).1, SavedState::Latest);
 }
 
 #[test]
 fn settings_with_which_a_gait_would_leave_the_travel_are_not_used() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     let mut narrow_settings = make_settings(&robot, 1);
     let mut adjustment = narrow_settings.adjustment(Servo::A3);
     adjustment.travel_max = Sweep(robot.needed_travel(Servo::A3).max.0 - 1);
@@ -260,8 +239,7 @@ fn settings_with_which_a_gait_would_leave_the_travel_are_not_used() {
 
 #[test]
 fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_is_gone() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     let saved_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     assert_eq!(
         saved_settings.boot(&robot),
@@ -287,8 +265,7 @@ fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_is_gone() {
 
 #[test]
 fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
-    let robot = asymmetric_robot();
-    let mut eeprom = Eeprom::blank();
+    let (robot, mut eeprom) = robot_with_blank_memory();
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let rest_pose = Pose(sweeps.map(Sweep));
@@ -303,28 +280,22 @@ fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
     while record_write.advance(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
     assert_eq!(last_rest_pose(&robot, &eeprom), None);
     let is_outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
-    let addresses_outside: Vec<u16> = eeprom
-        .log
-        .iter()
-        .map(|(address, ..)| *address)
-        .filter(is_outside)
-        .collect();
-    assert!(addresses_outside.is_empty());
+    let mut addresses = eeprom.log.iter().map(|(address, ..)| address);
+    assert!(!addresses.any(is_outside));
     assert_eq!(eeprom.bytes()[128], ERASED);
 }
 
 #[test]
 fn random_bytes_in_the_memory_are_not_read_as_settings() {
-    let robot = asymmetric_robot();
+    let robot = Sample::asymmetric();
     let mut state = 1u32;
     for _ in 0..2000 {
         let bytes: [u8; 1024] = core::array::from_fn(|index| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             // With the marks in place, so that only the CRC can reject the bytes.
-            if index % 64 == 0 {
-                0xa5
-            } else {
-                (state >> 24) as u8
+            match index % 64 {
+                0 => 0xa5,
+                _ => (state >> 24) as u8,
             }
         });
         let loaded = load_settings(&robot, &Eeprom::with_bytes(bytes));

@@ -37,7 +37,7 @@ impl Ram {
 
     /// Returns a copy of the RAM that loses all stores after the first `stores`.
     fn with_reset_after(&self, stores: usize) -> Self {
-        let ram = Self::with_bytes(self.bytes.borrow().clone());
+        let ram = self.copy_after_reset();
         ram.stores_left.set(stores);
         ram
     }
@@ -89,10 +89,8 @@ fn a_stored_stance_survives_a_reset_but_not_a_loss_of_power() {
             assert_eq!(restart.stance_before, Some(make_stance(n)));
             assert_eq!(restart.brown_outs, n as u8);
             // A second reset, before the program has stored anything.
-            assert_eq!(
-                begin(&restarted_ram, reported_cause).stance_before,
-                Some(make_stance(n))
-            );
+            let second_restart = begin(&restarted_ram, reported_cause);
+            assert_eq!(second_restart.stance_before, Some(make_stance(n)));
         }
         let unpowered_ram = ram.copy_after_reset();
         assert_eq!(begin(&unpowered_ram, Some(Cause::Power)), Restart::NONE);
@@ -176,10 +174,8 @@ fn every_cause_is_known_from_its_flag_or_from_ram() {
 fn resets_are_counted_up_to_255() {
     let ram = Ram::after_power_on();
     for n in 1..=600u32 {
-        assert_eq!(
-            u32::from(begin(&ram, Some(Cause::External)).reset_count),
-            n.min(255)
-        );
+        let restart = begin(&ram, Some(Cause::External));
+        assert_eq!(u32::from(restart.reset_count), n.min(255));
     }
     assert_eq!(begin(&ram, Some(Cause::Power)).reset_count, 0);
 }

@@ -56,20 +56,11 @@ fn an_invalid_angle_is_refused() {
         "", "a", ".5", "-", "+", "--1", "+-1", "1e2", "138.5x", "138.591", "138,59", "1.x", "1.5.",
         "1.-5", ".", "0x10",
     ] {
-        assert_eq!(
-            parse_angle(2, word),
-            Err(LineError::WrongArguments(Text::PoseUsage)),
-            "{word}"
-        );
+        let usage_error = Err(LineError::WrongArguments(Text::PoseUsage));
+        assert_eq!(parse_angle(2, word), usage_error, "{word}");
     }
     let lines = "pose|pose 1|pose 1 2 3|pose 1 2 3 4 5|pose 1 2 3 4 x|pose 1 999 3 4 5";
-    for line in lines.split('|') {
-        assert_eq!(
-            parse_line(line),
-            Err(LineError::WrongArguments(Text::PoseUsage)),
-            "{line}"
-        );
-    }
+    assert_each_refused(lines, LineError::WrongArguments(Text::PoseUsage));
 }
 
 #[test]
@@ -80,12 +71,6 @@ fn angles_go_to_the_servos_in_order_and_the_first_one_too_large_is_named() {
     };
     let centideg = angles.map(Angle::centideg);
     assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);
-    assert_eq!(
-        parse_line("pose 1 361 3 -400"),
-        Err(LineError::AngleOutOfRange(Servo::A2))
-    );
-    assert_eq!(
-        parse_line("pose 1 2 3 99999999"),
-        Err(LineError::AngleOutOfRange(Servo::A4))
-    );
+    assert_each_refused("pose 1 361 3 -400", LineError::AngleOutOfRange(Servo::A2));
+    assert_each_refused("pose 1 2 3 99999999", LineError::AngleOutOfRange(Servo::A4));
 }

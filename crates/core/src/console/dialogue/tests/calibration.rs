@@ -32,22 +32,11 @@ fn cal_prints_all_settings_and_no_state() {
         dialogue.expect_accepted(line);
     }
     let printed_lines = read_cal(&mut dialogue);
-    assert!(
-        printed_lines[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir "),
-        "{printed_lines:?}"
-    );
-    assert!(
-        printed_lines[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir "),
-        "{printed_lines:?}"
-    );
-    assert!(
-        printed_lines[2].contains(" dir - scale "),
-        "{printed_lines:?}"
-    );
-    assert!(
-        printed_lines[3].ends_with(" scale 9.87"),
-        "{printed_lines:?}"
-    );
+    let has_settings = printed_lines[0].starts_with("# A1 trim -3.25 limit 61.37 215.36 dir ")
+        && printed_lines[1].starts_with("# A2 trim 0.00 limit 350.00 130.50 dir ")
+        && printed_lines[2].contains(" dir - scale ")
+        && printed_lines[3].ends_with(" scale 9.87");
+    assert!(has_settings, "{printed_lines:?}");
     assert_eq!(
         printed_lines[4..],
         ["# boot sway left", "# deadman 1500", "ok cal"]
@@ -67,11 +56,7 @@ fn only_saved_settings_survive_a_loss_of_power() {
     let saved_lines = read_cal(&mut dialogue);
     dialogue.send_line("trim 2 5");
     assert_ne!(read_cal(&mut dialogue), saved_lines);
-    let mut restarted_dialogue = Dialogue::with_memory(
-        *Sample::asymmetric(),
-        dialogue.board.memory.clone(),
-        Restart::default(),
-    );
+    let mut restarted_dialogue = start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
     assert_eq!(
         restarted_dialogue.read_lines().len(),
         1,
@@ -118,11 +103,8 @@ fn a_change_of_calibration_moves_only_its_servo_and_within_the_slew_limit() {
         let widths_before = run_frame_and_read_widths(&mut dialogue);
         dialogue.expect_accepted(change);
         let motion = dialogue.motion();
-        let expected_widths = motion
-            .pose()
-            .pulses(motion.calibration())
-            .0
-            .map(|width| width.0);
+        let expected_pulses = motion.pose().pulses(motion.calibration());
+        let expected_widths = expected_pulses.0.map(|width| width.0);
         let gain = f64::from(motion.calibration()[0].gain).abs() / 16384.0;
         let max_change = f64::from(motion.robot().slew().per_frame) * gain;
         let mut last_widths = widths_before;
@@ -246,11 +228,8 @@ fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits()
             let answer = dialogue.send_line("load");
             let is_refused = answer == "err 9 nothing is saved that could be loaded";
             assert_eq!(is_refused, !is_loaded, "{servo:?}: {answer}");
-            assert_eq!(
-                read_cal(&mut dialogue) == lines_before,
-                is_refused,
-                "{servo:?}"
-            );
+            let is_unchanged = read_cal(&mut dialogue) == lines_before;
+            assert_eq!(is_unchanged, is_refused, "{servo:?}");
         }
     }
 }
@@ -265,22 +244,16 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
     dialogue.expect_refused("center 1", "2 ");
     dialogue.expect_accepted("center");
     dialogue.run_frames(200);
-    let neutral = Sample::asymmetric()
-        .calibration()
-        .map(|servo| servo.neutral_width.0);
-    for (width, neutral) in run_frame_and_read_widths(&mut dialogue)
-        .into_iter()
-        .zip(neutral)
-    {
+    let widths = run_frame_and_read_widths(&mut dialogue);
+    for (width, servo) in widths.into_iter().zip(Sample::asymmetric().calibration()) {
+        let neutral = servo.neutral_width.0;
         assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
     }
     dialogue.send_line("stand");
     dialogue.run_frames(200);
     let motion = dialogue.motion();
-    assert_eq!(
-        motion.sent_pulses(),
-        &Pose::NEUTRAL.pulses(motion.calibration())
-    );
+    let neutral_pulses = Pose::NEUTRAL.pulses(motion.calibration());
+    assert_eq!(motion.sent_pulses(), &neutral_pulses);
 }
 
 #[test]
@@ -294,17 +267,14 @@ fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
     for name in names {
         let mut dialogue = Dialogue::power_on(*make_robot());
         dialogue.run_frames(30);
-        assert_eq!(
-            dialogue.send_line(&format!("boot {name}")),
-            format!("ok boot {name}")
-        );
+        dialogue.expect_accepted(&format!("boot {name}"));
         dialogue.expect_accepted("save");
         let memory = dialogue.board.memory.clone();
         let mut restarted_dialogue = Dialogue::with_memory(*make_robot(), memory, Restart::NONE);
         restarted_dialogue.run_frames(151);
-        assert_eq!(
-            restarted_dialogue.status_value("gait"),
-            name.replace(' ', "-")
+        assert_status(
+            &mut restarted_dialogue,
+            &[("gait", &name.replace(' ', "-"))],
         );
     }
 }
@@ -348,10 +318,9 @@ fn after_a_change_of_calibration_a_gait_accelerates_gradually_to_its_full_pace()
     dialogue.run_frames(150);
     let full_advance = run_frame_and_measure_advance(&mut dialogue);
     dialogue.send_line("trim 2 3");
-    let mut advances = Vec::new();
-    for _ in 0..100 {
-        advances.push(run_frame_and_measure_advance(&mut dialogue));
-    }
+    let advances: Vec<u32> = (0..100)
+        .map(|_| run_frame_and_measure_advance(&mut dialogue))
+        .collect();
     let first_moving_frame = advances
         .iter()
         .position(|advance| *advance > 0)

@@ -9,19 +9,10 @@ const LONG_FRAMES: u32 = 400;
 fn a_counted_gait_ends_with_one_line_and_the_robot_holds_its_last_pose() {
     for name in ["sway", "sway left", "back"] {
         let mut dialogue = wake_asymmetric_robot();
-        assert_eq!(
-            dialogue.send_line(&format!("{name}  2")),
-            format!("ok {name}  2")
-        );
+        dialogue.expect_accepted(&format!("{name}  2"));
         assert_eq!(dialogue.status_value("gait"), name.replace(' ', "-"));
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# done"]);
-        assert_eq!(
-            (
-                dialogue.status_value("gait"),
-                dialogue.status_value("fault")
-            ),
-            ("stop".into(), "none".into())
-        );
+        assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "none")]);
         let held_pulses = dialogue.run_frame();
         assert!(dialogue.run_frames(LONG_FRAMES).is_empty());
         assert_eq!(dialogue.run_frame(), held_pulses);
@@ -37,9 +28,8 @@ fn a_counted_gait_ends_with_one_line_and_the_robot_holds_its_last_pose() {
 #[test]
 fn a_wrong_count_is_refused_and_changes_nothing() {
     let mut dialogue = wake_asymmetric_robot();
-    let message = "a gait takes a count, 1..999";
     for line in ["sway 0", "sway 1000", "sway 2x", "sway 1 1"] {
-        dialogue.expect_refused(line, &format!("2 {message}"));
+        dialogue.expect_refused(line, "2 a gait takes a count, 1..999");
         assert_eq!(dialogue.status_value("gait"), "stand");
     }
     dialogue.send_line("rest");
@@ -96,10 +86,7 @@ fn a_low_supply_slows_a_counted_gait_and_does_not_end_it() {
             .find(|_| dialogue.run_frames(1) == ["# done"])
             .expect("the gait ends")
     };
-    let (full_frames, slow_frames) = (
-        count_frames_until_done(None),
-        count_frames_until_done(Some(4_400)),
-    );
+    let [full_frames, slow_frames] = [None, Some(4_400)].map(count_frames_until_done);
     // An upper bound, since a lower pace lengthens the cycles, but hardly the speeding up and the braking.
     let max_frames = full_frames * 100 / u32::from(SLOW_PACE);
     assert!(

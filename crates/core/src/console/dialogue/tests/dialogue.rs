@@ -1,11 +1,14 @@
 //! A simulated robot, and helpers that converse with it over its serial line.
 
 use std::collections::HashMap;
+use std::format;
 use std::string::{String, ToString};
 
 use super::NEUTRAL_COMMAND;
+use crate::memory::restart::Restart;
+use crate::motion::Activity;
 use crate::sample::Sample;
-use crate::virtual_board::{RunningRobot, compute_reading};
+use crate::virtual_board::{Eeprom, RunningRobot, compute_reading};
 
 /// The number of frames until the robot stands and may begin to move.
 pub(super) const WAKING_FRAMES: u32 = 21;
@@ -29,6 +32,28 @@ pub(super) fn wake_robot(robot: Sample) -> Dialogue {
     );
     dialogue.run_frames(WAKING_FRAMES);
     dialogue
+}
+
+/// Starts the asymmetric sample robot with a copy of this memory.
+pub(super) fn start_asymmetric_robot(memory: &Eeprom, restart: Restart) -> Dialogue {
+    Dialogue::with_memory(*Sample::asymmetric(), memory.clone(), restart)
+}
+
+/// Checks several values of the status.
+#[track_caller]
+pub(super) fn assert_status(dialogue: &mut Dialogue, values: &[(&str, &str)]) {
+    for (key, value) in values {
+        assert_eq!(dialogue.status_value(key), *value, "{key}");
+    }
+}
+
+/// Returns the name of the gait that the robot carries out, or of its other activity.
+pub(super) fn activity_name(dialogue: &Dialogue) -> String {
+    let motion = dialogue.motion();
+    match motion.activity() {
+        Activity::Gait(id) => motion.robot().gait_name(id).map(char::from).collect(),
+        activity => format!("{activity:?}"),
+    }
 }
 
 /// Runs a frame and returns its pulse widths, in CPU cycles.

@@ -18,10 +18,7 @@ fn observe_effect(line: &str) -> Effect {
     let mut walking_dialogue = wake_robot(Sample::paper());
     // These settings make `load` and `factory` change something.
     for setting in ["trim 2 3", "save", "trim 1 5", "sway"] {
-        assert!(
-            walking_dialogue.send_line(setting).starts_with("ok "),
-            "{setting}"
-        );
+        walking_dialogue.expect_accepted(setting);
         walking_dialogue.run_frames(60);
     }
     let mut undisturbed_dialogue = walking_dialogue.clone();

@@ -8,25 +8,19 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
     for boot in ["sway left", "rest"] {
         dialogue.send_line(&format!("boot {boot}"));
         dialogue.expect_accepted("save");
-        let eeprom = dialogue.board.memory.clone();
-        let mut unattended_dialogue =
-            Dialogue::with_memory(*Sample::asymmetric(), eeprom.clone(), Restart::default());
+        let start_again = || start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
+        let mut unattended_dialogue = start_again();
         let printed_lines = unattended_dialogue.run_frames(149);
         assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
-        assert_eq!(
-            unattended_dialogue.motion().activity(),
-            Activity::Gait(GaitId::STAND)
+        let activity = unattended_dialogue.motion().activity();
+        assert_eq!(activity, Activity::Gait(GaitId::STAND));
+        let printed_lines = unattended_dialogue.run_frames(1);
+        assert_eq!(printed_lines, [format!("# boot: {boot}")]);
+        assert_status(
+            &mut unattended_dialogue,
+            &[("gait", &boot.replace(' ', "-"))],
         );
-        assert_eq!(
-            unattended_dialogue.run_frames(1),
-            [format!("# boot: {boot}")]
-        );
-        assert_eq!(
-            unattended_dialogue.status_value("gait"),
-            boot.replace(' ', "-")
-        );
-        let mut interrupted_dialogue =
-            Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::default());
+        let mut interrupted_dialogue = start_again();
         interrupted_dialogue.run_frames(100);
         interrupted_dialogue.board.send(b" ");
         interrupted_dialogue.run_frames(400);
@@ -43,18 +37,9 @@ fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
         assert!(dialogue.run_frames(15).is_empty());
         dialogue.send_line("status");
     }
-    let printed_lines = dialogue.run_frames(21);
-    assert_eq!(
-        printed_lines,
-        ["# fault: no line for as long as deadman says, stopped"]
-    );
-    assert_eq!(
-        (
-            dialogue.status_value("gait"),
-            dialogue.status_value("fault")
-        ),
-        ("stop".into(), "link".into())
-    );
+    let notice = "# fault: no line for as long as deadman says, stopped";
+    assert_eq!(dialogue.run_frames(21), [notice]);
+    assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "link")]);
     dialogue.send_line("sway");
     assert_eq!(dialogue.status_value("fault"), "none");
 }
@@ -93,17 +78,10 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
         dialogue.board.send(b"\n");
         let printed_lines = dialogue.run_frames(2);
         let gait = if is_obeyed { "sway" } else { "stand" };
-        assert_eq!(
-            dialogue.status_value("gait"),
-            gait,
-            "{deadman_ms} {wait_frames} {printed_lines:?}"
-        );
+        let case = format!("{deadman_ms} {wait_frames} {printed_lines:?}");
+        assert_eq!(dialogue.status_value("gait"), gait, "{case}");
         // The next line is valid.
-        assert_eq!(
-            dialogue.send_line("swing"),
-            "ok swing",
-            "{deadman_ms} {wait_frames}"
-        );
+        assert_eq!(dialogue.send_line("swing"), "ok swing", "{case}");
     }
 }
 
@@ -145,8 +123,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     set_supply(&mut dialogue, 4_200);
     let printed_lines = dialogue.run_frames(40);
     assert_eq!(printed_lines.len(), 2);
-    assert_eq!(dialogue.status_value("gait"), "stop");
-    assert_eq!(dialogue.status_value("fault"), "supply");
+    assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "supply")]);
     dialogue.expect_refused("sway", "8 ");
     dialogue.expect_refused(NEUTRAL_COMMAND, "8 ");
     set_supply(&mut dialogue, 4_000);
@@ -155,12 +132,8 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     assert_eq!(dialogue.run_frame(), Pulses::default());
     set_supply(&mut dialogue, 5_000);
     let printed_lines = dialogue.run_frames(100);
-    assert!(
-        printed_lines
-            .last()
-            .is_some_and(|line| line.ends_with(" V, good")),
-        "{printed_lines:?}"
-    );
+    let last_line = printed_lines.last().expect("the new level is reported");
+    assert!(last_line.ends_with(" V, good"), "{printed_lines:?}");
     assert_eq!(dialogue.status_value("gait"), "rest");
     dialogue.expect_accepted("stand");
 }
@@ -189,11 +162,8 @@ fn restart_after_hang(count: u8, stance: Stance) -> Restart {
 #[test]
 fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
     let stance = held_stance([400, -300, 200, -100]);
-    let mut dialogue = Dialogue::with_memory(
-        *Sample::asymmetric(),
-        Eeprom::blank(),
-        restart_after_hang(3, stance),
-    );
+    let restart = restart_after_hang(3, stance);
+    let mut dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
     let printed_lines = dialogue.run_frames(1);
     assert!(
         printed_lines.contains(&"# fault: the program hung and began anew".to_string()),
@@ -206,9 +176,14 @@ fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
             "the robot holds its pose from the first frame on"
         );
     }
-    assert_eq!(dialogue.status_value("reset"), "watchdog");
-    assert_eq!(dialogue.status_value("resets"), "3");
-    assert_eq!(dialogue.status_value("fault"), "watchdog");
+    assert_status(
+        &mut dialogue,
+        &[
+            ("reset", "watchdog"),
+            ("resets", "3"),
+            ("fault", "watchdog"),
+        ],
+    );
     dialogue.send_line("stand");
     dialogue.run_frames(100);
     assert_eq!(dialogue.status_value("fault"), "none");
@@ -223,8 +198,7 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
                 cause,
                 ..restart_after_hang(1, held_stance(sweeps))
             };
-            let mut dialogue =
-                Dialogue::with_memory(*Sample::asymmetric(), Eeprom::blank(), restart);
+            let mut dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
             for _ in 0..140 {
                 assert_eq!(dialogue.run_frame(), Pulses::default());
             }
@@ -239,23 +213,14 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
 #[test]
 fn after_a_reset_in_a_pose_outside_the_saved_limits_the_robot_rests() {
     let mut dialogue = wake_asymmetric_robot();
-    assert!(dialogue.send_line("limit 1 115 160").starts_with("ok "));
+    dialogue.expect_accepted("limit 1 115 160");
     dialogue.expect_accepted("save");
-    let eeprom = dialogue.board.memory.clone();
     // A1 at its neutral 132.37 deg plus 30 deg is safe, but beyond the saved limit of 160 deg.
-    let wide_stance = held_stance([5461, 0, 0, 0]);
-    let mut unlimited_dialogue = Dialogue::with_memory(
-        *Sample::asymmetric(),
-        Eeprom::blank(),
-        restart_after_hang(1, wide_stance),
-    );
+    let restart = restart_after_hang(1, held_stance([5461, 0, 0, 0]));
+    let mut unlimited_dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
     unlimited_dialogue.run_frames(10);
     assert_eq!(unlimited_dialogue.status_value("gait"), "stop");
-    let mut narrow_dialogue = Dialogue::with_memory(
-        *Sample::asymmetric(),
-        eeprom,
-        restart_after_hang(1, wide_stance),
-    );
+    let mut narrow_dialogue = start_asymmetric_robot(&dialogue.board.memory, restart);
     narrow_dialogue.run_frames(10);
     assert_eq!(narrow_dialogue.status_value("gait"), "rest");
 }
@@ -271,11 +236,12 @@ fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset()
         let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("pose 140 50 311 224.5");
         dialogue.run_frames(100);
-        assert!(dialogue.send_line(setting).starts_with("ok "), "{setting}");
+        dialogue.expect_accepted(setting);
         dialogue.run_frames(100);
         let mut last_pulses = dialogue.run_frame();
         dialogue.reset(cause);
         let calibration = *dialogue.motion().calibration();
+        let sweep_per_frame = dialogue.motion().robot().slew().per_frame;
         let mut moving_frame_count = 0;
         for _ in 0..200 {
             let pulses = dialogue.run_frame();
@@ -284,8 +250,7 @@ fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset()
                 if pulse.0 == 0 {
                     continue;
                 }
-                let max_change =
-                    calibration[index].max_width_change(Sample::asymmetric().slew().per_frame);
+                let max_change = calibration[index].max_width_change(sweep_per_frame);
                 let change = pulse.0.abs_diff(last_pulse.0);
                 assert!(
                     change <= max_change + 1,
@@ -373,12 +338,10 @@ fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
         dialogue.reset(cause);
         assert_eq!(dialogue.board.memory.bytes()[128], 0xff, "{cause:?}");
         dialogue.run_frames(100);
-        let eeprom = dialogue.board.memory.clone();
-        let mut restarted_dialogue =
-            Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::NONE);
-        assert_eq!(
-            restarted_dialogue.status_value("pose"),
-            "140.00,50.00,311.00,224.50"
+        let mut restarted_dialogue = start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
+        assert_status(
+            &mut restarted_dialogue,
+            &[("pose", "140.00,50.00,311.00,224.50")],
         );
     }
 }
@@ -401,10 +364,8 @@ fn three_brown_outs_or_button_resets_in_a_row_end_in_rest_until_stand_is_sent() 
             assert_eq!(is_resting, reset_count >= 3, "{reset_count}");
             let notice =
                 "# fault: reset several times in a row by the button or a weak supply, resting";
-            assert_eq!(
-                printed_lines.iter().any(|line| line == notice),
-                reset_count >= 3
-            );
+            let has_notice = printed_lines.iter().any(|line| line == notice);
+            assert_eq!(has_notice, reset_count >= 3);
         }
         dialogue.run_frames(300);
         assert_eq!(dialogue.run_frame(), Pulses::default(), "boot is cancelled");

@@ -50,17 +50,6 @@ fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
 }
 
 /// Returns the name of the running gait; if none runs, that of the activity.
-fn activity_name(dialogue: &Dialogue) -> String {
-    match dialogue.motion().activity() {
-        Activity::Gait(id) => dialogue
-            .motion()
-            .robot()
-            .gait_name(id)
-            .map(char::from)
-            .collect(),
-        activity => format!("{activity:?}"),
-    }
-}
 
 /// Runs until the robot's activity changes, at most [`LONG_FRAMES`] frames; returns the number of frames and the
 /// activity.
@@ -84,10 +73,8 @@ fn in_every_round_the_robot_waits_for_the_button_walks_to_the_wall_and_turns() {
             (activity_name(&dialogue), dialogue.status_value("gait")),
             ("Stop".into(), "patrol".into())
         );
-        assert_eq!(
-            press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES),
-            ["# waiting for nose"]
-        );
+        let printed_lines = press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
+        assert_eq!(printed_lines, ["# waiting for nose"]);
         assert_eq!(activity_name(&dialogue), "sway");
         assert!(
             dialogue.run_frames(3 * LONG_FRAMES).is_empty(),
@@ -145,10 +132,8 @@ fn a_nose_switch_that_is_already_closed_ends_the_walk_after_the_debounce_time() 
     dialogue.run_frames(LONG_FRAMES);
     set_contact(&mut dialogue, NOSE, true);
     press(&mut dialogue, BUTTON, DEBOUNCE_FRAMES);
-    assert_eq!(
-        run_until_change(&mut dialogue),
-        (DEBOUNCE_FRAMES, "back".to_string())
-    );
+    let change = run_until_change(&mut dialogue);
+    assert_eq!(change, (DEBOUNCE_FRAMES, "back".to_string()));
 }
 
 #[test]
@@ -240,11 +225,8 @@ fn a_wait_brakes_the_gait_before_it_and_moves_no_servo_faster_than_the_gait() {
     let mut changes = Vec::new();
     for _ in 0..200 {
         let new_widths = run_frame_and_read_widths(&mut dialogue);
-        let change = last_widths
-            .iter()
-            .zip(new_widths)
-            .map(|(a, b)| a.abs_diff(b))
-            .max();
+        let servo_changes = last_widths.iter().zip(new_widths);
+        let change = servo_changes.map(|(a, b)| a.abs_diff(b)).max();
         changes.push(change.expect("there are four widths"));
         last_widths = new_widths;
     }
@@ -327,10 +309,8 @@ fn on_a_low_supply_the_contact_still_ends_the_walk() {
     dialogue.run_frames(60);
     assert_eq!(activity_name(&dialogue), "sway");
     set_contact(&mut dialogue, NOSE, true);
-    assert_eq!(
-        run_until_change(&mut dialogue),
-        (DEBOUNCE_FRAMES, "back".to_string())
-    );
+    let change = run_until_change(&mut dialogue);
+    assert_eq!(change, (DEBOUNCE_FRAMES, "back".to_string()));
 }
 
 #[test]
@@ -339,9 +319,8 @@ fn a_routine_started_by_boot_waits_for_its_contacts_without_limit_despite_deadma
     for line in ["boot patrol", "deadman 200", "save"] {
         dialogue.expect_accepted(line);
     }
-    let robot = *Sample::asymmetric().with_routine("patrol", 0, &PATROL_STEPS);
-    let mut unattended_dialogue =
-        Dialogue::with_memory(robot, dialogue.board.memory.clone(), Restart::default());
+    let (robot, memory) = (*dialogue.motion().robot(), dialogue.board.memory.clone());
+    let mut unattended_dialogue = Dialogue::with_memory(robot, memory, Restart::NONE);
     let lines = unattended_dialogue.run_frames(10 * LONG_FRAMES);
     assert_eq!(
         lines[lines.len() - 2..],

@@ -10,19 +10,12 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     dialogue.send_line("rest");
     dialogue.run_frames(2);
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
-    let eeprom = dialogue.board.memory.clone();
-    let mut restarted_dialogue =
-        Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::NONE);
+    let mut restarted_dialogue = start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
     let write_count = restarted_dialogue.board.memory.log.len();
     for _ in 0..60 {
         restarted_dialogue.read_lines();
-        let measured_level = restarted_dialogue
-            .main
-            .control()
-            .safety()
-            .supply()
-            .measured_level();
-        if measured_level.is_none() {
+        let safety = restarted_dialogue.main.control().safety();
+        if safety.supply().measured_level().is_none() {
             assert_eq!(restarted_dialogue.board.memory.log.len(), write_count);
         }
         restarted_dialogue.run_frame();
@@ -78,12 +71,9 @@ fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
         printed_lines.contains(&"err 8 the supply is too low".to_string()),
         "{printed_lines:?}"
     );
-    let eeprom = dialogue.board.memory.clone();
-    let restarted_dialogue = Dialogue::with_memory(*Sample::asymmetric(), eeprom, Restart::NONE);
-    assert_eq!(
-        restarted_dialogue.main.control().settings().deadman_ms(),
-        1000
-    );
+    let restarted_dialogue = start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
+    let settings = restarted_dialogue.main.control().settings();
+    assert_eq!(settings.deadman_ms(), 1000);
 }
 
 #[test]
@@ -115,13 +105,11 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
     dialogue.send_line("pose 140 50 311 224.5");
     dialogue.run_frames(150);
     dialogue.send_line("rest");
-    let eeprom = dialogue.board.memory.clone();
-    let mut restarted_dialogue =
-        Dialogue::with_memory(*Sample::asymmetric(), eeprom.clone(), Restart::default());
+    let mut restarted_dialogue = start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
     restarted_dialogue.read_lines();
-    assert_eq!(
-        restarted_dialogue.status_value("pose"),
-        "140.00,50.00,311.00,224.50"
+    assert_status(
+        &mut restarted_dialogue,
+        &[("pose", "140.00,50.00,311.00,224.50")],
     );
     let rest_pulses = restarted_dialogue
         .motion()
@@ -131,11 +119,8 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
         for _ in 0..5 {
             let widths = run_frame_and_read_widths(&mut restarted_dialogue);
             for (index, width) in widths.into_iter().enumerate() {
-                let expected = if index < servo {
-                    rest_pulses.0[index].0
-                } else {
-                    0
-                };
+                let awake_width = rest_pulses.0[index].0;
+                let expected = if index < servo { awake_width } else { 0 };
                 // The fifth of these frames wakes `servo`.
                 assert!(width == expected || index == servo, "{servo} {index}");
             }
@@ -144,11 +129,7 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
     restarted_dialogue.run_frames(200);
     assert_eq!(restarted_dialogue.status_value("pose"), neutral_pose_text());
     // The rest pose of a robot that has moved since is no longer recorded.
-    let moved_dialogue = Dialogue::with_memory(
-        *Sample::asymmetric(),
-        restarted_dialogue.board.memory.clone(),
-        Restart::default(),
-    );
+    let moved_dialogue = start_asymmetric_robot(&restarted_dialogue.board.memory, Restart::NONE);
     assert_eq!(moved_dialogue.motion().pose(), &Pose::NEUTRAL);
 }
 

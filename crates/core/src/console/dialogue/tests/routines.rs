@@ -30,15 +30,7 @@ fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Ve
     let (mut gaits, mut printed_lines): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
         printed_lines.extend(dialogue.run_frames(1));
-        let gait = match dialogue.motion().activity() {
-            Activity::Gait(id) => dialogue
-                .motion()
-                .robot()
-                .gait_name(id)
-                .map(char::from)
-                .collect(),
-            activity => format!("{activity:?}"),
-        };
+        let gait = activity_name(dialogue);
         if gaits.last() != Some(&gait) {
             gaits.push(gait);
         }
@@ -107,12 +99,9 @@ fn a_timed_step_lasts_its_number_of_frames() {
 fn help_boot_and_cal_treat_a_routine_as_a_gait() {
     let mut dialogue = wake_robot(robot_with_routine(1));
     assert!(dialogue.send(b"help\r")[0].ends_with("|stray|patrol"));
-    assert_eq!(dialogue.send_line("boot patrol"), "ok boot patrol");
-    assert!(
-        dialogue
-            .send(b"cal\r")
-            .contains(&"# boot patrol".to_string())
-    );
+    dialogue.expect_accepted("boot patrol");
+    let printed_lines = dialogue.send(b"cal\r");
+    assert!(printed_lines.contains(&"# boot patrol".to_string()));
     dialogue.expect_accepted("save");
     let eeprom = dialogue.board.memory.clone();
     let mut unattended_dialogue =
@@ -144,22 +133,14 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         }
         let mut repeated_dialogue = snapshot.clone();
         repeated_dialogue.send_line("patrol");
-        assert_eq!(
-            run_recording_gaits(&mut repeated_dialogue, 30)
-                .0
-                .last()
-                .map(String::as_str),
-            Some("sway")
-        );
+        let (gaits, _) = run_recording_gaits(&mut repeated_dialogue, 30);
+        assert_eq!(gaits.last().map(String::as_str), Some("sway"));
         let mut low_supply_dialogue = snapshot.clone();
         set_supply(&mut low_supply_dialogue, 4_200);
         low_supply_dialogue.run_frames(60);
-        assert_eq!(
-            (
-                low_supply_dialogue.status_value("gait"),
-                low_supply_dialogue.status_value("fault")
-            ),
-            ("stop".into(), "supply".into())
+        assert_status(
+            &mut low_supply_dialogue,
+            &[("gait", "stop"), ("fault", "supply")],
         );
         set_supply(&mut low_supply_dialogue, 5_000);
         assert_eq!(
@@ -214,11 +195,8 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
     for snapshot in record_snapshots(|| robot_with_routine(0)) {
         let mut dialogue = snapshot;
         dialogue.send_line("deadman 200");
-        let printed_lines = dialogue.run_frames(100);
-        assert_eq!(
-            printed_lines,
-            ["# fault: no line for as long as deadman says, stopped"]
-        );
+        let notice = "# fault: no line for as long as deadman says, stopped";
+        assert_eq!(dialogue.run_frames(100), [notice]);
         assert_eq!(dialogue.status_value("gait"), "stop");
     }
     let mut dialogue = wake_robot(robot_with_routine(0));

@@ -42,8 +42,7 @@ fn a_voltage_is_left_out_until_it_is_measured() {
     let line = dialogue.send_line("status");
     assert!(line.ends_with(" resets=0"), "{line}");
     dialogue.run_frames(4);
-    assert_eq!(dialogue.status_value("vcc"), "5.00");
-    assert_eq!(dialogue.status_value("rail"), "6.00");
+    assert_status(&mut dialogue, &[("vcc", "5.00"), ("rail", "6.00")]);
 }
 
 #[test]

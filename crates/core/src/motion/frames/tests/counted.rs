@@ -129,11 +129,8 @@ fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
             motion.tick();
         }
         motion.run(2);
-        assert_eq!(
-            motion.gait_name(),
-            Some("sway"),
-            "the gait is still under way"
-        );
+        let gait = motion.gait_name();
+        assert_eq!(gait, Some("sway"), "the gait is still under way");
         motion
     };
     let start_counted = || {

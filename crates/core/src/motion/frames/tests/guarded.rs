@@ -33,21 +33,17 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         assert_eq!(motion.hazard(), hazard);
     }
     // The reported hazard is one that the gait's poses have.
-    let id = motion.robot.gait_id("stray");
-    let gait = motion.robot.gait(id);
-    let hazards: Vec<Hazard> = (0..CYCLE)
-        .step_by(1000)
-        .filter_map(|phase| {
-            let pose = gait.pose(motion.robot.waves(), phase);
-            Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot)
-        })
-        .collect();
-    let is_same_kind = |other_hazard: &Hazard| match (other_hazard, hazard) {
-        (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => *a == b,
-        (Hazard::Stroke { side: a, .. }, Some(Hazard::Stroke { side: b, .. })) => *a == b,
+    let gait = motion.robot.gait(motion.robot.gait_id("stray"));
+    let mut hazards = (0..CYCLE).step_by(1000).filter_map(|phase| {
+        let pose = gait.pose(motion.robot.waves(), phase);
+        Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot)
+    });
+    let is_same_kind = |other_hazard: Hazard| match (other_hazard, hazard) {
+        (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => a == b,
+        (Hazard::Stroke { side: a, .. }, Some(Hazard::Stroke { side: b, .. })) => a == b,
         _ => false,
     };
-    assert!(hazards.iter().any(is_same_kind), "{hazard:?}");
+    assert!(hazards.any(is_same_kind), "{hazard:?}");
 }
 
 #[test]

@@ -3,6 +3,14 @@
 use super::*;
 use crate::numbers::units::PulseWidth;
 
+/// Calibrates each servo so that its neutral pulse is 1000 cycles longer.
+fn lengthen_neutral_pulses(motion: &mut Motion) {
+    for (index, mut servo) in motion.calibration.into_iter().enumerate() {
+        servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);
+        motion.calibrate(Servo::at(index), servo);
+    }
+}
+
 #[test]
 fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     // The gains of this robot differ from servo to servo.
@@ -15,28 +23,18 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
     });
     for (index, max_change) in max_changes.iter().enumerate() {
         assert!(
-            max_changes[..index]
-                .iter()
-                .all(|other_change| other_change != max_change),
+            !max_changes[..index].contains(max_change),
             "{max_changes:?}"
         );
     }
-    for index in 0..4 {
-        let mut servo = motion.calibration[index];
-        servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);
-        motion.calibrate(Servo::at(index), servo);
-    }
+    lengthen_neutral_pulses(&mut motion);
     motion.settle();
     for frame in 1..=1000u16 {
         motion.tick();
         for (index, sent_width) in motion.sent_pulses().0.iter().enumerate() {
             let change = sent_width.0 - pulses_before[index].0;
-            assert_eq!(
-                change,
-                1000.min(frame.saturating_mul(max_changes[index])),
-                "A{}",
-                index + 1
-            );
+            let max_change = frame.saturating_mul(max_changes[index]);
+            assert_eq!(change, max_change.min(1000), "A{}", index + 1);
         }
     }
 }
@@ -46,11 +44,7 @@ fn the_first_pulses_after_a_reset_repeat_the_last_ones_however_far_the_settings_
     // The reset may have occurred after the last pulses were computed and before they were sent.
     let stance_before = *Motion::standing().stance();
     let mut motion = Motion::new(*Sample::asymmetric());
-    for index in 0..4 {
-        let mut servo = motion.calibration[index];
-        servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);
-        motion.calibrate(Servo::at(index), servo);
-    }
+    lengthen_neutral_pulses(&mut motion);
     assert!(motion.resume(&stance_before, false));
     assert_eq!(motion.tick(), stance_before.sent_pulses);
     let next_pulses = motion.tick();

@@ -64,10 +64,9 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
                 if width != PulseWidth(0) && first_frames[index] == 0 {
                     first_frames[index] = frame;
                 }
-                let expected_width = if first_frames[index] > 0 {
-                    held_pulses.0[index]
-                } else {
-                    PulseWidth(0)
+                let expected_width = match first_frames[index] {
+                    0 => PulseWidth(0),
+                    _ => held_pulses.0[index],
                 };
                 assert_eq!(width, expected_width);
             }
@@ -103,13 +102,8 @@ fn stop_during_waking_lets_the_servos_wake_but_nothing_move() {
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.pose(), &pose);
     assert_eq!(motion.tick(), motion.held_pulses());
-    assert!(
-        motion
-            .held_pulses()
-            .0
-            .iter()
-            .all(|width| *width > PulseWidth(0))
-    );
+    let widths = motion.held_pulses().0;
+    assert!(widths.iter().all(|width| *width > PulseWidth(0)));
 }
 
 #[test]
