@@ -109,6 +109,14 @@ test('a file is opened, or dropped anywhere on the page', async () => {
   assert.equal(await tomlOf(page), droppedToml);
 });
 
+/** Copies a link to the page's robot, and returns it. */
+async function copyLink(page) {
+  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.getByRole('button', { name: 'Copy a link' }).click();
+  await page.getByText('The link is copied').waitFor();
+  return page.evaluate(() => navigator.clipboard.readText());
+}
+
 /** Waits until the page has the robot of a text; the comments may differ, because a link has none. */
 async function waitForSameRobot(page, expectedToml) {
   await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(expectedToml).name);
@@ -135,13 +143,10 @@ async function scanQrCode(page) {
 
 test('a link contains the robot, survives a reload, and is read by a phone from a QR code', async () => {
   const page = await openTextEditor();
-  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const largeToml = await readFile(LARGE, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE);
   await waitForRobot(page, largeToml);
-  await page.getByRole('button', { name: 'Copy a link' }).click();
-  await page.getByText('The link is copied').waitFor();
-  const link = await page.evaluate(() => navigator.clipboard.readText());
+  const link = await copyLink(page);
   assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 1900, `${link.length} letters`);
   const otherPage = await openPage();
   assert.notEqual(await tomlOf(otherPage), largeToml);
@@ -169,14 +174,12 @@ test('a link contains the robot, survives a reload, and is read by a phone from 
 
 test('a link drops comments, and keeps everything else', async () => {
   const page = await openTextEditor();
-  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
   const toml = `# one\n${(await tomlOf(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
   await takeText(page, toml);
   await waitForRobot(page, toml);
-  await page.getByRole('button', { name: 'Copy a link' }).click();
-  await page.getByText('The link is copied').waitFor();
+  const link = await copyLink(page);
   const otherPage = await openPage();
-  await otherPage.goto(await page.evaluate(() => navigator.clipboard.readText()));
+  await otherPage.goto(link);
   await waitForSameRobot(otherPage, toml);
   assert.doesNotMatch(await tomlOf(otherPage), /one|three/);
 });

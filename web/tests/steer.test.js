@@ -17,6 +17,9 @@ async function openPredicted(options = {}) {
   return page;
 }
 
+/** Sets the state of the gamepads that the page finds. */
+const setGamepads = (page, ...gamepads) => page.evaluate((gamepads) => (navigator.getGamepads = () => gamepads), gamepads);
+
 const waitForGait = (page, gait) => page.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
 
 test('arrow keys make the robot walk, bend and turn while they are held, and stop it when released', async () => {
@@ -68,13 +71,9 @@ test('the robot walks in the direction of the stick on the screen', async () => 
 
 test('a stick that is deflected by half drives at half the pace, and its release restores the pace', async () => {
   const page = await openPredicted();
-  await page.evaluate(() => {
-    window.gamepad = { axes: [0, 0], buttons: [{ pressed: false }] };
-    navigator.getGamepads = () => [window.gamepad];
-    return window.lizard.ask('speed 80').then(() => null);
-  });
+  await page.evaluate(() => window.lizard.ask('speed 80').then(() => null));
   const waitForPace = async (percent) => page.waitForFunction((text) => document.querySelector('#speed-out').textContent === text, `${percent} %`);
-  const deflectStick = (ahead, pressed = false) => page.evaluate(([ahead, pressed]) => (window.gamepad = { axes: [0, -ahead], buttons: [{ pressed }] }), [ahead, pressed]);
+  const deflectStick = (ahead, pressed = false) => setGamepads(page, { axes: [0, -ahead], buttons: [{ pressed }] });
   await waitForPace(80);
   await deflectStick(0.5);
   await waitForGait(page, 'walk');
@@ -107,14 +106,11 @@ test('the robot stops when the window loses the focus', async () => {
 
 test('a gamepad drives', async () => {
   const page = await openPredicted();
-  await page.evaluate(() => {
-    window.gamepad = { axes: [0, -1], buttons: [] };
-    navigator.getGamepads = () => [null, window.gamepad];
-  });
+  await setGamepads(page, null, { axes: [0, -1], buttons: [] });
   await waitForGait(page, 'walk');
-  await page.evaluate(() => (window.gamepad = { axes: [-0.8, -0.8], buttons: [] }));
+  await setGamepads(page, null, { axes: [-0.8, -0.8], buttons: [] });
   await waitForGait(page, 'arc left');
-  await page.evaluate(() => (window.gamepad = { axes: [0.1, 0], buttons: [] }));
+  await setGamepads(page, null, { axes: [0.1, 0], buttons: [] });
   await waitForGait(page, 'stop');
 });
 
@@ -124,17 +120,16 @@ test('a button of a gamepad stops the robot once, and the stick drives again onl
     window.sentLines = [];
     const { ask } = window.lizard;
     window.lizard.ask = (line, ...args) => (window.sentLines.push(line), ask.call(window.lizard, line, ...args));
-    window.gamepad = { axes: [0, -1], buttons: [{ pressed: false }] };
-    navigator.getGamepads = () => [null, window.gamepad];
   });
+  await setGamepads(page, null, { axes: [0, -1], buttons: [{ pressed: false }] });
   await waitForGait(page, 'walk');
-  await page.evaluate(() => (window.gamepad.buttons = [{ pressed: true }]));
+  await setGamepads(page, null, { axes: [0, -1], buttons: [{ pressed: true }] });
   await waitForGait(page, 'stop');
   await page.waitForTimeout(500);
   assert.deepEqual((await page.evaluate(() => window.sentLines)).filter((line) => line !== 'status'), ['walk', 'stop']);
-  await page.evaluate(() => (window.gamepad = { axes: [0, 0], buttons: [] }));
+  await setGamepads(page, null, { axes: [0, 0], buttons: [] });
   await page.waitForTimeout(200);
-  await page.evaluate(() => (window.gamepad = { axes: [0, -1], buttons: [] }));
+  await setGamepads(page, null, { axes: [0, -1], buttons: [] });
   await waitForGait(page, 'walk');
 });
 
@@ -142,22 +137,20 @@ test('a button of a gamepad stops a gait that was started by a button of the pag
   const page = await openPredicted();
   await page.locator('#gaits button[data-command="walk"]').click();
   await waitForGait(page, 'walk');
-  await page.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, 0], buttons: [{ pressed: true }] }]));
+  await setGamepads(page, { axes: [0, 0], buttons: [{ pressed: true }] });
   await waitForGait(page, 'stop');
 });
 
 test('a second gamepad and the direction pad drive, too', async () => {
   const page = await openPredicted();
-  await page.evaluate(() => {
-    const buttons = Array.from({ length: 16 }, (_, n) => ({ pressed: n === 12 }));
-    navigator.getGamepads = () => [{ axes: [0, 0], buttons: [] }, { axes: [0, 0], buttons }];
-  });
+  const buttons = Array.from({ length: 16 }, (_, n) => ({ pressed: n === 12 }));
+  await setGamepads(page, { axes: [0, 0], buttons: [] }, { axes: [0, 0], buttons });
   await waitForGait(page, 'walk');
 });
 
 test('a held gamepad does not keep the robot walking when another window gets the focus', async () => {
   const page = await openPredicted();
-  await page.evaluate(() => (navigator.getGamepads = () => [{ axes: [0, -1], buttons: [] }]));
+  await setGamepads(page, { axes: [0, -1], buttons: [] });
   await waitForGait(page, 'walk');
   await page.evaluate(() => void window.dispatchEvent(new Event('blur')));
   await waitForGait(page, 'stop');
