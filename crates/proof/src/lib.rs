@@ -5,7 +5,7 @@
 //! angle. This decides every possible pose: 1.8e18 poses for servos with a travel of half a turn. Only a [`PairSample`]
 //! leaves out pairs.
 //!
-//! [`Proof::of`] computes the whole proof. The pieces of a [`GuardComparison`] can also be computed on several
+//! [`Proof::compute`] computes the whole proof. The pieces of a [`GuardComparison`] can also be computed on several
 //! machines; [`Proof::from_tallies`] then combines their tallies. The crate reads, stores and prints nothing; a piece
 //! uses all cores.
 //!

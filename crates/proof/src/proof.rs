@@ -21,7 +21,7 @@ pub struct Proof {
 impl Proof {
     /// Compares a share of the pairs of a robot with a guard, normally the robot's own. `progress` is called with the
     /// number of rows completed since its last call; [`Proof::row_count`] is their total.
-    pub fn of(
+    pub fn compute(
         robot: &Robot,
         guard: &CoreRobot,
         sample: PairSample,
@@ -42,7 +42,7 @@ impl Proof {
         }
     }
 
-    /// The number of rows that [`Proof::of`] compares.
+    /// The number of rows that [`Proof::compute`] compares.
     pub fn row_count(guard: &CoreRobot) -> u64 {
         walk::row_count(guard)
     }

@@ -125,7 +125,7 @@ impl Judge {
     /// Draws `robot_count` random variations of this robot on this ground, from consecutive seeds, the first of which
     /// is `seed`.
     pub fn new(robot: &Robot, ground: &Ground, goal: Goal, robot_count: usize, seed: u64) -> Self {
-        let variation_of = |index: u64| Variation::of(ground, seed.wrapping_add(index));
+        let variation_of = |index: u64| Variation::random(ground, seed.wrapping_add(index));
         Self {
             robot: robot.clone(),
             ground: *ground,
@@ -159,7 +159,7 @@ impl Judge {
 
     /// Simulates a cycle on the robot itself frame by frame, with the servos [`SERVO_MODEL`].
     fn simulate_cycle_by_frames(&self, gait: &CheckedGait) -> Travel {
-        Variation::none(&self.ground).simulate_cycle(&self.robot, gait, SERVO_MODEL)
+        Variation::unvaried(&self.ground).simulate_cycle(&self.robot, gait, SERVO_MODEL)
     }
 
     /// Computes the speed that the gait exceeds on 95 % of the random robots. `None` if the gait's movement on the

@@ -47,7 +47,7 @@ pub struct Variation {
 
 impl Variation {
     /// Draws a random robot and floor around this ground; the seed determines them.
-    pub fn of(ground: &Ground, seed: u64) -> Self {
+    pub fn random(ground: &Ground, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let mut draw_within = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
         let feet = ground.feet;
@@ -108,7 +108,7 @@ impl Variation {
     }
 
     /// Returns the given ground without any variation.
-    pub fn none(ground: &Ground) -> Self {
+    pub fn unvaried(ground: &Ground) -> Self {
         Self {
             ground: *ground,
             pad_factors: [1.0; 4],
@@ -192,7 +192,11 @@ mod tests {
         let walk = robot.gait("walk").expect("paper.toml has the gait");
         let movements: Vec<Travel> = (0..40)
             .map(|seed| {
-                Variation::of(robot.ground(), seed).simulate_cycle(&robot, walk, ServoModel::SG90)
+                Variation::random(robot.ground(), seed).simulate_cycle(
+                    &robot,
+                    walk,
+                    ServoModel::SG90,
+                )
             })
             .collect();
         let quantiles_of = |component: fn(&Travel) -> f64| {
@@ -211,7 +215,11 @@ mod tests {
             let robot = Robot::parse(&format!("{text}\n{feet}")).expect("the robot file is valid");
             let walk = robot.gait("walk").expect("paper.toml has the gait");
             let movements = (0..60).map(|seed| {
-                Variation::of(robot.ground(), seed).simulate_cycle(&robot, walk, ServoModel::SG90)
+                Variation::random(robot.ground(), seed).simulate_cycle(
+                    &robot,
+                    walk,
+                    ServoModel::SG90,
+                )
             });
             let [slowest] = quantiles(movements.map(|movement| movement.forward).collect(), [0.05]);
             slowest
@@ -228,7 +236,7 @@ mod tests {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         for seed in 0..50 {
-            let variation = Variation::of(robot.ground(), seed);
+            let variation = Variation::random(robot.ground(), seed);
             let with_play = variation.with_play(seed);
             let play = with_play.ground.drive.play;
             assert!(
@@ -254,7 +262,7 @@ mod tests {
                 let gait = robot.gait(name).expect("paper.toml has the gait");
                 for model in [ServoModel::Ideal, ServoModel::SG90] {
                     let movement =
-                        Variation::none(robot.ground()).simulate_cycle(&robot, gait, model);
+                        Variation::unvaried(robot.ground()).simulate_cycle(&robot, gait, model);
                     let twin_movement = Twin::new(&robot, model).simulate_cycle(gait).travel();
                     let error = (movement.forward - twin_movement.forward)
                         .hypot(movement.turn - twin_movement.turn);

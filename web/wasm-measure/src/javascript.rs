@@ -90,7 +90,7 @@ impl PageCamera {
     ) -> Result<JsValue, JsError> {
         let picture = match pixels.len() == width * height {
             true => Picture::new(width, height, pixels),
-            false => Picture::of_colours(width, height, &pixels),
+            false => Picture::from_rgba(width, height, &pixels),
         };
         let picture = picture.ok_or_else(|| JsError::new("the picture is incomplete"))?;
         Ok(to_js(match is_kept {

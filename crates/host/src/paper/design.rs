@@ -4,8 +4,8 @@
 use std::io::{self, BufWriter, Write};
 
 use lizard_paper::design::{
-    BestValues, CLAIMED_LCI, ChartPoint, Conditioning, Demands, Design, PROPORTION_SUM,
-    Performance, Proportions, Search, compute_chart_points, find_design, merge_and_rank,
+    BestValues, CLAIMED_LCI, ChartPoint, Conditioning, Design, PROPORTION_SUM, Performance,
+    Proportions, Requirements, Search, compute_chart_points, find_design, merge_and_rank,
     triangle_points,
 };
 use lizard_robot::Robot;
@@ -315,7 +315,7 @@ fn print_ranking(
         let (min_angle, max_angle) = servo.travel();
         max_angle.min(-min_angle)
     });
-    let demands = Demands {
+    let requirements = Requirements {
         base_mm: l0,
         chassis_length_mm: robot.lizard().links.l10,
         leg_crank_mm: robot.lizard().leg.crank,
@@ -324,7 +324,7 @@ fn print_ranking(
         min_link_mm: args.shortest,
         sweep_deg: args.sweep,
     };
-    let search = Search::new(args.step, demands);
+    let search = Search::new(args.step, requirements);
     let point_count = search.point_count(args.spread.own_piece_count(search.piece_count()));
     let progress = progress_bar(point_count, "designs {bar:40} {pos}/{len} {eta}");
     let search_piece = |index| search.compute_piece(index, &|| progress.inc(1));
@@ -337,7 +337,7 @@ fn print_ranking(
     };
     let designs = merge_and_rank(pieces);
     let top_designs = &designs[..designs.len().min(args.top)];
-    let given_design = find_design(given_proportions, &demands);
+    let given_design = find_design(given_proportions, &requirements);
     if args.json {
         return Ok(json::write_line(out, &top_designs)?);
     }

@@ -8,4 +8,4 @@ mod search;
 pub use chart::{ChartPoint, compute_chart_points};
 pub use performance::{CLAIMED_LCI, Conditioning, Performance, lci};
 pub use proportions::{PROPORTION_SUM, Proportions, triangle_points};
-pub use search::{BestValues, Demands, Design, Search, find_design, merge_and_rank};
+pub use search::{BestValues, Design, Requirements, Search, find_design, merge_and_rank};

@@ -13,7 +13,7 @@ use super::proportions::{Proportions, triangle_points};
 
 /// The requirements for every design.
 #[derive(Clone, Copy)]
-pub struct Demands {
+pub struct Requirements {
     /// Base l0, mm.
     pub base_mm: f64,
     /// Chassis length l10, mm.
@@ -60,15 +60,15 @@ const PIECE_SIZE: usize = 64;
 /// The search, divided into pieces that do not depend on each other.
 pub struct Search {
     points: Vec<Proportions>,
-    demands: Demands,
+    requirements: Requirements,
 }
 
 impl Search {
     /// Prepares the search of all points of the triangle on a grid of this step.
-    pub fn new(step: f64, demands: Demands) -> Self {
+    pub fn new(step: f64, requirements: Requirements) -> Self {
         Self {
             points: triangle_points(step),
-            demands,
+            requirements,
         }
     }
 
@@ -82,7 +82,7 @@ impl Search {
         self.points.len().min(piece_count * PIECE_SIZE)
     }
 
-    /// Computes the designs of one piece that meet the demands. Calls `report_progress` after each point.
+    /// Computes the designs of one piece that meet the requirements. Calls `report_progress` after each point.
     pub fn compute_piece(&self, index: usize, report_progress: &(dyn Fn() + Sync)) -> Vec<Design> {
         let points = self
             .points
@@ -90,7 +90,7 @@ impl Search {
             .nth(index)
             .unwrap_or_default();
         let designs = points.par_iter().filter_map(|point| {
-            let design = find_design(*point, &self.demands);
+            let design = find_design(*point, &self.requirements);
             report_progress();
             design
         });
@@ -107,28 +107,28 @@ pub fn merge_and_rank(pieces: Vec<Vec<Design>>) -> Vec<Design> {
 
 /// Finds the best design with these proportions, without a score. Returns `None` if its safe sweep is smaller than
 /// demanded, or if a link is too short.
-pub fn find_design(proportions: Proportions, demands: &Demands) -> Option<Design> {
-    let d = proportions.scale_for_base(demands.base_mm);
+pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Option<Design> {
+    let d = proportions.scale_for_base(requirements.base_mm);
     let five_bar = proportions.at_scale(d);
-    if five_bar.left_crank_length.min(five_bar.left_coupler_length) < demands.min_link_mm {
+    if five_bar.left_crank_length.min(five_bar.left_coupler_length) < requirements.min_link_mm {
         return None;
     }
     let (neutral, sweep) = (90..=170)
         .map(|neutral| {
             let neutral = f64::from(neutral);
-            (neutral, largest_sweep(&five_bar, neutral, demands))
+            (neutral, largest_sweep(&five_bar, neutral, requirements))
         })
         .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
-    if sweep < demands.sweep_deg {
+    if sweep < requirements.sweep_deg {
         return None;
     }
-    let (margin, lci) = margin_and_lci(&five_bar, neutral, demands.sweep_deg);
+    let (margin, lci) = margin_and_lci(&five_bar, neutral, requirements.sweep_deg);
     Some(Design {
         proportions,
         d,
         neutral,
         sweep,
-        stride: 2.0 * demands.leg_crank_mm * sweep.to_radians().sin(),
+        stride: 2.0 * requirements.leg_crank_mm * sweep.to_radians().sin(),
         margin,
         lci,
         score: 0.0,
@@ -137,14 +137,14 @@ pub fn find_design(proportions: Proportions, demands: &Demands) -> Option<Design
 }
 
 /// The largest sweep about a neutral angle within all limits, degrees.
-fn largest_sweep(five_bar: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
-    let (mut safe_deg, mut unsafe_deg) = (0.0, demands.travel_deg.min(89.9));
-    if !keeps_limits(five_bar, neutral, safe_deg, demands) {
+fn largest_sweep(five_bar: &FiveBar, neutral: f64, requirements: &Requirements) -> f64 {
+    let (mut safe_deg, mut unsafe_deg) = (0.0, requirements.travel_deg.min(89.9));
+    if !keeps_limits(five_bar, neutral, safe_deg, requirements) {
         return 0.0;
     }
     for _ in 0..9 {
         let middle_deg = (safe_deg + unsafe_deg) / 2.0;
-        if keeps_limits(five_bar, neutral, middle_deg, demands) {
+        if keeps_limits(five_bar, neutral, middle_deg, requirements) {
             safe_deg = middle_deg;
         } else {
             unsafe_deg = middle_deg;
@@ -157,9 +157,9 @@ fn largest_sweep(five_bar: &FiveBar, neutral: f64, demands: &Demands) -> f64 {
 const SWEEP_SAMPLES: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// True if the five-bar and the sliders keep the limits at all sampled angles of the sweep.
-fn keeps_limits(five_bar: &FiveBar, neutral: f64, sweep: f64, demands: &Demands) -> bool {
-    let limits = &demands.limits;
-    let slider = slider_of_side(five_bar, demands);
+fn keeps_limits(five_bar: &FiveBar, neutral: f64, sweep: f64, requirements: &Requirements) -> bool {
+    let limits = &requirements.limits;
+    let slider = slider_of_side(five_bar, requirements);
     // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
     let span_of = |front: f64, rear: f64| {
         slider
@@ -181,10 +181,10 @@ fn keeps_limits(five_bar: &FiveBar, neutral: f64, sweep: f64, demands: &Demands)
 }
 
 /// The slider of a side, with arms as long as the cranks, as in the paper.
-fn slider_of_side(five_bar: &FiveBar, demands: &Demands) -> Slider {
+fn slider_of_side(five_bar: &FiveBar, requirements: &Requirements) -> Slider {
     Slider {
         front_offset: 0.0,
-        base: demands.chassis_length_mm,
+        base: requirements.chassis_length_mm,
         front_arm: five_bar.left_crank_length,
         rear_arm: five_bar.left_crank_length,
         nominal_length: 0.0,

@@ -97,7 +97,7 @@ pub fn run(
         }
         let simulate = |seed: u64| {
             bar.inc(1);
-            Variation::of(robot.ground(), seed)
+            Variation::random(robot.ground(), seed)
                 .with_play(seed)
                 .simulate_cycle(robot, gait, model)
         };
