@@ -40,7 +40,7 @@ fn the_guard_judges_every_pair_of_positions_outside_the_band_or_in_a_cell_correc
             offset: (seed().wrapping_add(number) % u64::from(SAMPLE_ONE_IN)) as u32,
         };
         let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
-        let proof = Proof::of(&robot, robot.firmware(), sample, &|_| {});
+        let proof = Proof::compute(&robot, robot.firmware(), sample, &|_| {});
         let pair_count: u64 = proof
             .findings
             .iter()
@@ -83,10 +83,10 @@ fn a_guard_with_another_robots_lengths_fails_the_proof() {
         offset: 1,
     };
     assert_eq!(
-        Proof::of(&robot, robot.firmware(), sample, &|_| {}).wrong_count(),
+        Proof::compute(&robot, robot.firmware(), sample, &|_| {}).wrong_count(),
         0
     );
-    let proof = Proof::of(&robot, longer_robot.firmware(), sample, &|_| {});
+    let proof = Proof::compute(&robot, longer_robot.firmware(), sample, &|_| {});
     // The findings are those of the two ends, the two sides, and the legs, whose margins do not depend on lengths.
     let has_longer_bars = [true, false, true, true].into_iter().chain(repeat(false));
     for (finding, has_longer_bars) in proof.findings.iter().zip(has_longer_bars) {
