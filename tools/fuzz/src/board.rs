@@ -167,12 +167,8 @@ impl Board {
     /// If the robot breaks a rule.
     pub fn run_frame(&mut self) {
         self.running_robot.run_frame();
-        let widths = self
-            .running_robot
-            .board
-            .started_pulses()
-            .0
-            .map(|width| width.0);
+        let widths = self.running_robot.board.started_pulses().0;
+        let widths = widths.map(|width| width.0);
         self.observer.observe_frame(self.now, widths);
         self.now += 20 * MS;
         self.settle();

@@ -95,11 +95,10 @@ impl Parts {
         #[wasm_bindgen(unchecked_param_type = "(done: number, total: number) => void")]
         progress: &Function,
     ) -> Result<Option<f64>, Refused> {
-        let proof = self.0.prove(|done, total| {
+        self.0.prove(|done, total| {
             // An error of the callback is ignored: a page that no longer needs the proof terminates the worker.
             let _ = progress.call2(&JsValue::NULL, &done.into(), &total.into());
-        })?;
-        Ok(proof.least)
+        })
     }
 
     /// Makes one group of files; `group` is the group's index, below `ModelEntry.files`.

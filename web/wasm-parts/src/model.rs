@@ -258,24 +258,16 @@ impl Model {
         Ok(documents(&self.assembly, &bill, &pose)?)
     }
 
-    /// Proves that no two parts overlap or come too close in any pose that the guard accepts.
+    /// Proves that no two parts overlap or come too close in any pose that the guard accepts. Returns the least distance
+    /// between two parts that are not designed to touch, mm; `None` if no such pair was checked.
     ///
     /// # Errors
     /// Returns the two parts that overlap most, or else come closest.
-    pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Proved, Refused> {
+    pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Option<f64>, Refused> {
         let proof = self.assembly.prove(progress);
         proof.judge().map_err(BuildProblem::from)?;
-        Ok(Proved {
-            least: proof.nearest_separate_pair().map(|pair| pair.lower_bound),
-        })
+        Ok(proof.nearest_separate_pair().map(|pair| pair.lower_bound))
     }
-}
-
-/// The result of a successful proof.
-#[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct Proved {
-    /// Least distance between two parts that are not designed to touch, mm; `None` if no such pair was checked.
-    pub least: Option<f64>,
 }
 
 /// Returns the homogeneous matrix, column by column, of a solid's pose in its mount's frame; the identity for `None`.

@@ -52,35 +52,31 @@ impl CoreRun {
         let adc_code = |pin_volts: f64, supply_volts: f64| {
             (ADC_FULL_SCALE * pin_volts / supply_volts).clamp(0.0, ADC_FULL_SCALE - 1.0)
         };
-        self.running_robot
-            .board
-            .converter
-            .set_true_reading(Reading {
-                reference: adc_code(REFERENCE_VOLTS, volts).round() as u16,
-                rail: adc_code(self.rail_pin_mv / 1000.0, volts) as u16,
-            });
+        let reading = Reading {
+            reference: adc_code(REFERENCE_VOLTS, volts).round() as u16,
+            rail: adc_code(self.rail_pin_mv / 1000.0, volts) as u16,
+        };
+        self.running_robot.board.converter.set_true_reading(reading);
         // The bytes arrive one by one, as on a serial line.
         for byte in bytes {
             self.running_robot.board.send(&[*byte]);
             self.running_robot.settle();
         }
         self.running_robot.run_frame();
+        let board = &mut self.running_robot.board;
         CoreFrame {
-            widths: self
-                .running_robot
-                .board
-                .submitted_pulses()
-                .0
-                .map(|width| width.0),
-            text: std::mem::take(&mut self.running_robot.board.transmitter.text),
+            widths: board.submitted_pulses().0.map(|width| width.0),
+            text: std::mem::take(&mut board.transmitter.text),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use lizard_robot::Robot;
+
+    use super::*;
+    use crate::paper::paper_robot;
 
     /// Sends a line in the first frame and runs `frames` frames; returns the last pulse widths in CPU cycles.
     fn send_and_run(
@@ -130,9 +126,7 @@ mod tests {
 
     #[test]
     fn a_low_supply_is_reported() {
-        let robot =
-            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
-        let mut core = CoreRun::power_on(*robot.firmware(), Eeprom::blank());
+        let mut core = CoreRun::power_on(*paper_robot().firmware(), Eeprom::blank());
         let mut output = String::new();
         send_and_run(&mut output, &mut core, "", 200);
         for _ in 0..200 {

@@ -303,15 +303,6 @@ const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
 
 /// Returns the lengths of a robot that may be changed, with their present values.
 fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
-    let values = robot.lizard().links.to_array();
-    let links = LINK_LABELS_AND_TWINS.iter().zip(values).enumerate();
-    let links = links.map(|(i, ((label, twin), value))| LinkEntry {
-        key: format!("links.l{i}"),
-        label,
-        twin: format!("links.l{twin}"),
-        unit: "mm",
-        value,
-    });
     let (leg, feet) = (robot.lizard().leg, robot.ground().feet);
     let entry_of = |key: &str, label, twin: &str, value| LinkEntry {
         key: key.to_string(),
@@ -320,6 +311,16 @@ fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
         unit: if key == "leg.mount" { "deg" } else { "mm" },
         value,
     };
+    let values = robot.lizard().links.to_array();
+    let links = LINK_LABELS_AND_TWINS.iter().zip(values).enumerate();
+    let links = links.map(|(i, ((label, twin), value))| {
+        entry_of(
+            &format!("links.l{i}"),
+            label,
+            &format!("links.l{twin}"),
+            value,
+        )
+    });
     let [forward_key, side_key] = HIP_KEYS;
     let [front_side, hind_side] = feet.hip_side;
     let legs = [
@@ -356,8 +357,7 @@ mod tests {
 
     #[test]
     fn a_length_is_the_twin_of_its_twin() {
-        let robot =
-            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
+        let robot = crate::paper::paper_robot();
         let lengths = Description::of(&robot).lengths;
         for length in &lengths {
             let twin = lengths

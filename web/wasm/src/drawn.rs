@@ -72,14 +72,11 @@ impl DrawnGait {
             let kept_terms = terms
                 .iter()
                 .filter(|term| term.amplitude >= MIN_AMPLITUDE_MM);
-            let term_text = |Harmonic {
-                                 k,
-                                 amplitude,
-                                 shift,
-                             }: &Harmonic| {
+            let term_texts = kept_terms.map(|term| {
+                let (k, amplitude, shift) = (term.k, term.amplitude, term.shift);
                 format!("{{ k = {k}, amplitude = {amplitude:.2}, shift = {shift:.4} }}")
-            };
-            kept_terms.map(term_text).collect::<Vec<_>>().join(", ")
+            });
+            term_texts.collect::<Vec<_>>().join(", ")
         };
         let ([centre_x, centre_y], x, y) =
             (path.centre, series_text(&path.x), series_text(&path.y));
@@ -148,10 +145,9 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
             passed_length += lengths[segment];
             segment += 1;
         }
-        let segment_share = if lengths[segment] > 0.0 {
-            (distance - passed_length) / lengths[segment]
-        } else {
-            0.0
+        let segment_share = match lengths[segment] > 0.0 {
+            true => (distance - passed_length) / lengths[segment],
+            false => 0.0,
         };
         let (from, to) = (points[segment], next_point(segment));
         even_points

@@ -81,19 +81,15 @@ impl FasterSearch {
     /// # Errors
     /// Returns the limit that the gait to beat violates, or the reason why it cannot be made faster.
     pub fn begin(twin: &Twin, task: &SearchTask) -> Result<Self, Refused> {
-        let refusal_of = |key: &str, reason: String| Refused {
-            refused: reason,
-            consequence: None,
-            line: None,
-            key: key.to_string(),
-        };
         let robot = twin.robot().with_gait(&task.bars.to_toml());
         let robot = robot.map_err(Refused::of_gait)?;
         let (gait, ground) = (&robot.gaits()[1], twin.ground());
         let tuning = Tuning::new(&robot, ground, gait, task.rate, &task.bars.name, task.seed);
         let tuning = tuning.map_err(|error| match error {
-            TuningError::Goal(_) => refusal_of("", error.to_string()),
-            TuningError::Rate { .. } => refusal_of("rate", format!("servos of at most {error}")),
+            TuningError::Goal(_) => Refused::of_key("", error.to_string()),
+            TuningError::Rate { .. } => {
+                Refused::of_key("rate", format!("servos of at most {error}"))
+            }
         })?;
         Ok(Self {
             searches: GaitKind::ALL.map(|kind| tuning.search(kind)),

@@ -79,15 +79,14 @@ impl Floor {
     #[must_use]
     pub fn with_valid_values(self, robot: &Robot) -> Self {
         let own_floor = Self::of(robot);
-        let positive_or_own = |value: f64, own_value: f64| match value > 0.0 && value.is_finite() {
+        let finite_or_own = |value: f64, is_in_range: bool, own_value: f64| match is_in_range
+            && value.is_finite()
+        {
             true => value,
             false => own_value,
         };
-        let non_negative_or_own =
-            |value: f64, own_value: f64| match value >= 0.0 && value.is_finite() {
-                true => value,
-                false => own_value,
-            };
+        let positive_or_own = |value, own_value| finite_or_own(value, value > 0.0, own_value);
+        let non_negative_or_own = |value, own_value| finite_or_own(value, value >= 0.0, own_value);
         Self {
             friction: positive_or_own(self.friction, own_floor.friction),
             ratio: positive_or_own(self.ratio, own_floor.ratio),
@@ -97,10 +96,7 @@ impl Floor {
             rate: non_negative_or_own(self.rate, own_floor.rate),
             play: non_negative_or_own(self.play, own_floor.play),
             leaf: positive_or_own(self.leaf, own_floor.leaf),
-            twist: match self.twist.is_finite() {
-                true => self.twist,
-                false => own_floor.twist,
-            },
+            twist: finite_or_own(self.twist, true, own_floor.twist),
         }
     }
 
@@ -135,8 +131,7 @@ impl Floor {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const PAPER_TOML: &str = include_str!("../../../robots/paper.toml");
+    use crate::paper::PAPER_TOML;
 
     fn robot_with(extra_toml: &str) -> Robot {
         Robot::parse(&format!("{PAPER_TOML}\n{extra_toml}"))

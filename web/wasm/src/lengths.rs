@@ -56,15 +56,10 @@ impl Lengths {
     pub fn of(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
         let changed_text = match with_lengths(text, requested) {
             Ok(text) => text,
-            Err(unknown_key) => return Self::of_refusal(text.to_string(), unknown_key.into()),
+            Err(unknown_key) => return Self::alone(text.to_string(), Some(unknown_key.into())),
         };
         let Err(error) = Robot::parse(&changed_text) else {
-            return Self {
-                text: changed_text,
-                refusal: None,
-                nearest: None,
-                without: None,
-            };
+            return Self::alone(changed_text, None);
         };
         let gait = error.key.strip_prefix("gait.");
         let gait = gait.and_then(|rest| rest.split('.').next());
@@ -78,14 +73,15 @@ impl Lengths {
                 Robot::parse(&text).ok()?;
                 Some(WithoutGait { gait, text })
             }),
-            ..Self::of_refusal(changed_text, error.into())
+            ..Self::alone(changed_text, Some(error.into()))
         }
     }
 
-    fn of_refusal(text: String, refusal: Refused) -> Self {
+    /// Returns a text and its refusal, without alternatives.
+    fn alone(text: String, refusal: Option<Refused>) -> Self {
         Self {
             text,
-            refusal: Some(refusal),
+            refusal,
             nearest: None,
             without: None,
         }
@@ -166,8 +162,7 @@ fn find_nearest_lengths(text: &str, requested: &RequestedLengths) -> Option<Near
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const PAPER_TOML: &str = include_str!("../../../robots/paper.toml");
+    use crate::paper::PAPER_TOML;
 
     /// Returns a length for a leg's crank and for the follower, which must equal it.
     fn crank_lengths(mm: f64) -> [(String, f64); 2] {

@@ -1,7 +1,7 @@
 //! The map of singularities of an end: the plane of its two crank angles, the margin at every
 //! point of it, and the curves on which the margin is zero.
 
-use lizard_kinematics::{Check, End, Limits, Lizard, Pose, SingularPose, Singularity};
+use lizard_kinematics::{Check, End, Pose, SingularPose, Singularity};
 use lizard_robot::Robot;
 use serde::Serialize;
 use tsify::Tsify;
@@ -61,15 +61,7 @@ impl SingularityMap {
         let angle_at = |i: usize| MIN_ANGLE_DEG + GRID_STEP_DEG * i as f64;
         let points = (0..size).flat_map(|left| (0..size).map(move |right| (left, right)));
         let (margins, safe) = points
-            .map(|(left, right)| {
-                evaluate_point(
-                    robot.lizard(),
-                    robot.limits(),
-                    end,
-                    angle_at(left),
-                    angle_at(right),
-                )
-            })
+            .map(|(left, right)| evaluate_point(robot, end, angle_at(left), angle_at(right)))
             .unzip();
         Self {
             end: end.to_string(),
@@ -85,21 +77,16 @@ impl SingularityMap {
 
 /// Computes the smallest margin of an end at its crank angles, in hundredths; the bool is true if the limits
 /// allow these angles.
-fn evaluate_point(
-    lizard: &Lizard,
-    limits: &Limits,
-    end: End,
-    left: f64,
-    right: f64,
-) -> (Option<i8>, bool) {
-    let Ok(five_bar_pose) = lizard.end(end).forward(left, right) else {
+fn evaluate_point(robot: &Robot, end: End, left: f64, right: f64) -> (Option<i8>, bool) {
+    let Ok(five_bar_pose) = robot.lizard().end(end).forward(left, right) else {
         return (None, false);
     };
     let margins = five_bar_pose.conditions(end).into_iter();
     let smallest_margin = margins
         .filter(|(check, _)| !Check::UNCROSSED.contains(check))
         .fold(1.0f64, |smallest, (_, value)| smallest.min(value));
-    let is_safe = limits.end_violations(end, &five_bar_pose).next().is_none();
+    let mut violations = robot.limits().end_violations(end, &five_bar_pose);
+    let is_safe = violations.next().is_none();
     (Some((smallest_margin * 100.0).round() as i8), is_safe)
 }
 
@@ -148,8 +135,7 @@ mod tests {
 
     #[test]
     fn the_neutral_pose_is_safe_on_both_maps_and_coinciding_tips_are_not() {
-        let robot =
-            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
+        let robot = crate::paper::paper_robot();
         for end in End::ALL {
             let map = SingularityMap::of(&robot, end);
             let index_at = |MapPoint(left, right): MapPoint| {

@@ -10,11 +10,11 @@ use tsify::Tsify;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
 pub struct Movement {
     /// Ahead, mm; `None` if it is undetermined.
-    forward: Option<f64>,
+    pub forward: Option<f64>,
     /// To the left, mm; `None` if it is undetermined.
-    left: Option<f64>,
+    pub left: Option<f64>,
     /// Counter-clockwise, deg; `None` if it is undetermined.
-    turn: Option<f64>,
+    pub turn: Option<f64>,
 }
 
 impl From<Travel> for Movement {
@@ -39,14 +39,6 @@ impl From<Prediction> for Movement {
             left,
             turn,
         }
-    }
-}
-
-impl Movement {
-    /// Returns the distance ahead, mm; `None` if it is undetermined.
-    #[must_use]
-    pub fn forward(&self) -> Option<f64> {
-        self.forward
     }
 }
 
@@ -96,23 +88,13 @@ impl GaitPrediction {
 
     /// Predicts a gait with ideal servos.
     fn with_ideal_servos(gait: &CheckedGait, ground: &Ground) -> Self {
-        match SpringCost::of(gait, ground) {
-            Some(SpringCost {
-                movement,
-                max_lag: lag,
-                share_of_rigid: share,
-            }) => Self {
-                movement: movement.into(),
-                lag: Some(lag),
-                share,
-                lines: None,
-            },
-            None => Self {
-                movement: gait.predict(ground).into(),
-                lag: None,
-                share: None,
-                lines: None,
-            },
+        let cost = SpringCost::of(gait, ground);
+        let movement = cost.map_or_else(|| gait.predict(ground), |cost| cost.movement);
+        Self {
+            movement: movement.into(),
+            lag: cost.map(|cost| cost.max_lag),
+            share: cost.and_then(|cost| cost.share_of_rigid),
+            lines: None,
         }
     }
 }

@@ -19,6 +19,16 @@ pub struct Refused {
 }
 
 impl Refused {
+    /// Creates a refusal that belongs to a key, or to none if `key` is empty.
+    pub(crate) fn of_key(key: &str, refused: String) -> Self {
+        Self {
+            refused,
+            consequence: None,
+            line: None,
+            key: key.to_string(),
+        }
+    }
+
     /// Converts the error of a gait; drops the line, since the user does not see the gait's text.
     pub(crate) fn of_gait(error: Error) -> Self {
         let Error {
@@ -49,11 +59,6 @@ impl From<Error> for Refused {
 
 impl From<NoSuchKey> for Refused {
     fn from(error: NoSuchKey) -> Self {
-        Self {
-            refused: error.to_string(),
-            consequence: None,
-            line: None,
-            key: error.0,
-        }
+        Self::of_key(&error.0, error.to_string())
     }
 }

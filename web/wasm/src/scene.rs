@@ -1,6 +1,6 @@
 //! The points and margins of one pose, as the page draws them.
 
-use lizard_kinematics::{Check, End, Limits, Pose, Side, Solution, Vector};
+use lizard_kinematics::{Check, End, Pose, Side, Solution, Vector};
 use lizard_robot::{LegPlace, Robot};
 use lizard_twin::{Shape, Twin};
 use serde::Serialize;
@@ -101,6 +101,7 @@ impl Scene {
             .map_err(|fault| fault.to_string())?;
         let shape = Shape::at_solution(robot, &solution, twin.leg_sweeps());
         let sprung = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
+        let refusal = robot.limits().violations(&solution).next();
         let margin_of = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,
@@ -116,17 +117,10 @@ impl Scene {
             legs: shape.legs.map(|leg| LegScene::of(leg, sprung)).into(),
             margins: solution.margins.iter().map(margin_of).collect(),
             smallest: margin_of(solution.margins.min()),
-            refusal: refusal_of(robot.limits(), &solution),
+            refusal: refusal.map(|violation| violation.to_string()),
             map: End::ALL.map(|end| map::map_point(end, &pose)),
         })
     }
-}
-
-fn refusal_of(limits: &Limits, solution: &Solution) -> Option<String> {
-    limits
-        .violations(solution)
-        .next()
-        .map(|violation| violation.to_string())
 }
 
 impl LegScene {
@@ -149,11 +143,11 @@ fn slider_scene(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -
         Side::Left => links.l12,
         Side::Right => links.l17,
     };
-    let [_, rear_tip] = servos.map(|servo| shape.arm_tips[servo]);
+    let tips = servos.map(|servo| shape.arm_tips[servo]);
     SliderScene {
         shafts: servos.map(|servo| shape.shafts[servo].into()),
-        tips: servos.map(|servo| shape.arm_tips[servo].into()),
-        tube: (rear_tip + pose.span * (rear_half / pose.d)).into(),
+        tips: tips.map(Spot::from),
+        tube: (tips[1] + pose.span * (rear_half / pose.d)).into(),
         travel: pose.s,
     }
 }

@@ -122,8 +122,7 @@ mod tests {
 
     #[test]
     fn the_neutral_point_is_allowed_and_points_out_of_reach_are_not() {
-        let robot =
-            Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
+        let robot = crate::paper::paper_robot();
         for end in End::ALL {
             let workspace = Workspace::of(&robot, end);
             let is_allowed_at = |[x, y]: [f64; 2]| {

@@ -3,8 +3,7 @@
 use lizard_robot::Travel;
 
 use super::*;
-
-const PAPER_TOML: &str = include_str!("../../../../robots/paper.toml");
+use crate::paper::PAPER_TOML;
 
 #[test]
 fn a_refused_robot_leaves_the_previous_one_in_place() {
@@ -24,16 +23,33 @@ fn page_of_paper() -> Page {
     page
 }
 
-/// Returns the index of a gait.
-fn gait_index(page: &Page, name: &str) -> usize {
-    let gait = page.robot().and_then(|robot| robot.gait(name));
-    gait.expect("the robot has this gait").index()
+/// Returns a page of the paper's robot with ideal servos.
+fn page_with_ideal_servos() -> Page {
+    let mut page = page_of_paper();
+    page.set_servos("ideal");
+    page
+}
+
+/// Returns the robot's own values of the sliders.
+fn own_floor(page: &Page) -> Floor {
+    Floor::of(page.robot().expect("a robot was read"))
+}
+
+fn predict_walk(page: &Page) -> GaitPrediction {
+    let walk = page.robot().and_then(|robot| robot.gait("walk"));
+    let walk_index = walk.expect("the robot has this gait").index();
+    page.predict(walk_index).expect("the robot has this gait")
+}
+
+/// Returns the predicted distance of a cycle of `walk`, mm.
+fn predicted_mm(page: &Page) -> f64 {
+    let forward = predict_walk(page).movement.forward;
+    forward.expect("the displacement is determined")
 }
 
 #[test]
 fn a_servo_keeps_its_angle_when_its_pulses_end() {
-    let mut page = page_of_paper();
-    page.set_servos("ideal");
+    let mut page = page_with_ideal_servos();
     let scene_of = |frame: Option<Frame>| {
         frame
             .and_then(|frame| frame.scene)
@@ -137,14 +153,10 @@ fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
 #[test]
 fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
     let mut page = page_of_paper();
-    let walk_index = gait_index(&page, "walk");
-    let forward_of = |page: &Page| {
-        page.predict(walk_index)
-            .and_then(|prediction| prediction.movement.forward())
-    };
-    let sg90_mm = forward_of(&page).expect("the displacement is determined");
+    let lines_of = |page: &Page| predict_walk(page).lines.expect("the servos are not ideal");
+    let sg90_mm = predicted_mm(&page);
     page.set_servos("ideal");
-    let ideal_mm = forward_of(&page).expect("the displacement is determined");
+    let ideal_mm = predicted_mm(&page);
     // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, and up to 2 % since the samples
     // of a waveform cut its corners; the prediction for ideal servos has no such samples.
     assert!(
@@ -152,15 +164,9 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
         "{sg90_mm} {ideal_mm}"
     );
     page.set_servos("copy");
-    let copy_prediction = page
-        .predict(walk_index)
-        .expect("the displacement is determined");
-    let copy_lines = copy_prediction.lines.expect("the servos are not ideal");
+    let copy_lines = lines_of(&page);
     page.set_servos("own");
-    let own_lines = page
-        .predict(walk_index)
-        .and_then(|prediction| prediction.lines)
-        .expect("the servos are not ideal");
+    let own_lines = lines_of(&page);
     for (copy_share, own_share) in copy_lines.into_iter().zip(own_lines) {
         assert!(
             copy_share > 1.3 * own_share,
@@ -173,21 +179,12 @@ fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
         "{own_lines:?}"
     );
     page.set_servos("own at 4.0");
-    let weak_lines = page
-        .predict(walk_index)
-        .and_then(|prediction| prediction.lines);
-    assert!(
-        (weak_lines.expect("the servos are not ideal")[19] - 0.87).abs() < 0.005,
-        "{weak_lines:?}"
-    );
+    let weak_lines = lines_of(&page);
+    assert!((weak_lines[19] - 0.87).abs() < 0.005, "{weak_lines:?}");
     // An unknown supply changes nothing.
     page.set_servos("own at 12");
     page.set_servos("own at a wall");
-    assert_eq!(
-        page.predict(walk_index)
-            .and_then(|prediction| prediction.lines),
-        weak_lines
-    );
+    assert_eq!(lines_of(&page), weak_lines);
 }
 
 #[test]
@@ -207,27 +204,19 @@ fn at_least_two_feet_hold_at_any_time_of_a_walk() {
 
 #[test]
 fn springs_set_on_the_page_act_as_predicted() {
-    let mut page = page_of_paper();
-    page.set_servos("ideal");
-    let walk_index = gait_index(&page, "walk");
-    let rigid_prediction = page.predict(walk_index).expect("the robot has this gait");
+    let mut page = page_with_ideal_servos();
+    let (rigid_prediction, rigid_mm) = (predict_walk(&page), predicted_mm(&page));
     assert_eq!((rigid_prediction.lag, rigid_prediction.share), (None, None));
     for force in [0.35, 0.55] {
         page.set_floor(Floor {
             kind: Legs::Strut,
             force,
-            ..Floor::of(page.robot().expect("a robot was read"))
+            ..own_floor(&page)
         });
-        let sprung_prediction = page.predict(walk_index).expect("the robot has this gait");
+        let (sprung_prediction, sprung_mm) = (predict_walk(&page), predicted_mm(&page));
         let (movement, _, largest_lag) = follow_cycles(&mut page, "walk", 1);
-        let forward_of = |prediction: &GaitPrediction| {
-            prediction
-                .movement
-                .forward()
-                .expect("the displacement is determined")
-        };
         assert!(
-            (movement.forward - forward_of(&sprung_prediction)).abs() < 0.5,
+            (movement.forward - sprung_mm).abs() < 0.5,
             "{movement:?} {sprung_prediction:?}"
         );
         assert!(
@@ -235,7 +224,7 @@ fn springs_set_on_the_page_act_as_predicted() {
                 < 0.05,
             "{largest_lag} {sprung_prediction:?}"
         );
-        let share = forward_of(&sprung_prediction) / forward_of(&rigid_prediction);
+        let share = sprung_mm / rigid_mm;
         assert!(
             (sprung_prediction.share.expect("the legs have springs") - share).abs() < 0.01,
             "{sprung_prediction:?}"
@@ -246,40 +235,28 @@ fn springs_set_on_the_page_act_as_predicted() {
 #[test]
 fn a_strut_with_a_strong_spring_performs_like_a_rigid_one() {
     let mut page = page_of_paper();
-    let floor = Floor {
+    page.set_floor(Floor {
         kind: Legs::Strut,
         force: 3.0,
-        ..Floor::of(page.robot().expect("a robot was read"))
-    };
-    page.set_floor(floor);
-    let prediction = page
-        .predict(gait_index(&page, "walk"))
-        .expect("the robot has this gait");
-    assert!(
-        prediction.share.expect("the legs have springs") > 0.99,
-        "{prediction:?}"
-    );
+        ..own_floor(&page)
+    });
+    let share = predict_walk(&page).share.expect("the legs have springs");
+    assert!(share > 0.99, "{share}");
 }
 
 #[test]
 fn mass_and_friction_matter_only_with_springs() {
     let forward_with = |kind: Legs, mass: f64, friction: f64, force: f64| {
-        let mut page = page_of_paper();
-        page.set_servos("ideal");
-        let floor = Floor {
+        let mut page = page_with_ideal_servos();
+        page.set_floor(Floor {
             kind,
             force,
             rate: 0.8 * force,
             mass,
             friction,
-            ..Floor::of(page.robot().expect("a robot was read"))
-        };
-        page.set_floor(floor);
-        let movement = page
-            .predict(gait_index(&page, "walk"))
-            .expect("the robot has this gait")
-            .movement;
-        movement.forward().expect("the displacement is determined")
+            ..own_floor(&page)
+        });
+        predicted_mm(&page)
     };
     let [rigid, strut] = [Legs::Rigid, Legs::Strut];
     let rigid_mm = forward_with(rigid, 280.0, 0.7, 1.0);
@@ -293,14 +270,12 @@ fn mass_and_friction_matter_only_with_springs() {
 #[test]
 fn friction_that_differs_by_direction_changes_the_prediction() {
     let mut page = page_of_paper();
-    let walk_index = gait_index(&page, "walk");
-    let even_prediction = page.predict(walk_index);
-    let floor = Floor {
+    let even_prediction = predict_walk(&page);
+    page.set_floor(Floor {
         ratio: 1.4,
-        ..Floor::of(page.robot().expect("a robot was read"))
-    };
-    page.set_floor(floor);
-    assert_ne!(page.predict(walk_index), even_prediction);
+        ..own_floor(&page)
+    });
+    assert_ne!(predict_walk(&page), even_prediction);
     assert_eq!(page.predict(99), None);
 }
 
@@ -334,21 +309,14 @@ fn a_written_floor_is_read_back_and_everything_else_stays() {
 #[test]
 fn a_foot_that_is_too_long_shortens_the_predicted_walk_on_stiff_feet() {
     let mut page = page_of_paper();
-    let (walk_index, own_floor) = (
-        gait_index(&page, "walk"),
-        Floor::of(page.robot().expect("a robot was read")),
-    );
+    let own_floor = own_floor(&page);
     let mut forward_with = |leaf: f64, twist: f64| {
         page.set_floor(Floor {
             leaf,
             twist,
             ..own_floor
         });
-        let movement = page
-            .predict(walk_index)
-            .expect("the robot has this gait")
-            .movement;
-        movement.forward().expect("the displacement is determined")
+        predicted_mm(&page)
     };
     let level_mm = forward_with(2.0, 0.0);
     assert!(

@@ -43,16 +43,13 @@ fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
 fn a_reversed_gait_walks_the_same_distance_backwards() {
     let (robot, twin) = paper_robot_and_twin();
     let back = robot.gait("back").expect("the robot has this gait");
-    let predicted_mm = GaitPrediction::of(&twin, back)
-        .movement
-        .forward()
-        .expect("the distance is determined");
+    let forward_mm = |prediction: GaitPrediction| {
+        let forward = prediction.movement.forward;
+        forward.expect("the distance is determined")
+    };
+    let predicted_mm = forward_mm(GaitPrediction::of(&twin, back));
     let trial = try_bars(&bars_of(&robot, "back"), &twin).expect("the gait is valid");
-    let trial_mm = trial
-        .prediction
-        .movement
-        .forward()
-        .expect("the distance is determined");
+    let trial_mm = forward_mm(trial.prediction);
     assert!(
         predicted_mm < -5.0 && (trial_mm - predicted_mm).abs() < 0.1,
         "{trial_mm} and {predicted_mm} mm"
@@ -60,15 +57,13 @@ fn a_reversed_gait_walks_the_same_distance_backwards() {
     assert!((trial.speed - back.audit().peak_speed.speed).abs() < 2.0);
     for name in ["walk", "crawl", "arc-left"] {
         let bars = bars_of(&robot, name);
-        let forward_trial = try_bars(&bars, &twin).expect("the gait is valid");
-        let reversed_trial = try_bars(&bars.reversed(), &twin).expect("the gait is valid");
-        let [forward_mm, reversed_mm] =
-            [forward_trial, reversed_trial].map(|trial| trial.prediction.movement.forward());
-        let sum = forward_mm.expect("the distance is determined")
-            + reversed_mm.expect("the distance is determined");
+        let [own_mm, reversed_mm] = [bars.clone(), bars.reversed()].map(|bars| {
+            let trial = try_bars(&bars, &twin).expect("the gait is valid");
+            forward_mm(trial.prediction)
+        });
         assert!(
-            sum.abs() < 0.2,
-            "{name}: {forward_mm:?} and {reversed_mm:?} mm"
+            (own_mm + reversed_mm).abs() < 0.2,
+            "{name}: {own_mm} and {reversed_mm} mm"
         );
         let twice_reversed = bars.reversed().reversed();
         assert_eq!(twice_reversed.gain, bars.gain, "{name}");
@@ -89,35 +84,25 @@ fn a_refusal_offers_the_nearest_valid_values() {
         amplitude: 60.0,
         ..bars_of(&robot, "walk")
     };
-    {
-        let refusal = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
-        assert!(
-            refusal.refused.key.starts_with("gait.walk"),
-            "{:?}",
-            refusal.refused
-        );
-        assert!(!refusal.alternatives.is_empty(), "{:?}", refusal.refused);
-        for Alternative { what, value } in refusal.alternatives {
-            let with_value = |value: f64| match what {
-                "amplitude" => Bars {
-                    amplitude: value,
-                    ..too_large_gait.clone()
-                },
-                _ => Bars {
-                    period: value,
-                    ..too_large_gait.clone()
-                },
-            };
-            let step = if what == "amplitude" { 0.1 } else { -0.01 };
-            assert!(
-                try_bars(&with_value(value), &twin).is_ok(),
-                "{what} {value}"
-            );
-            assert!(
-                try_bars(&with_value(value + step), &twin).is_err(),
-                "{what} {value}"
-            );
-        }
+    let refusal = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
+    assert!(
+        refusal.refused.key.starts_with("gait.walk"),
+        "{:?}",
+        refusal.refused
+    );
+    assert!(!refusal.alternatives.is_empty(), "{:?}", refusal.refused);
+    for Alternative { what, value } in refusal.alternatives {
+        let is_valid_with = |value: f64| {
+            let mut bars = too_large_gait.clone();
+            match what {
+                "amplitude" => bars.amplitude = value,
+                _ => bars.period = value,
+            }
+            try_bars(&bars, &twin).is_ok()
+        };
+        let step = if what == "amplitude" { 0.1 } else { -0.01 };
+        assert!(is_valid_with(value), "{what} {value}");
+        assert!(!is_valid_with(value + step), "{what} {value}");
     }
 }
 
@@ -165,12 +150,10 @@ fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
 #[test]
 fn an_invalid_name_is_refused_without_alternatives() {
     let (robot, twin) = paper_robot_and_twin();
-    let result = try_bars(
-        &Bars {
-            name: "Wa lk".to_string(),
-            ..bars_of(&robot, "walk")
-        },
-        &twin,
-    );
-    assert_eq!(result.expect_err("the name is invalid").alternatives, []);
+    let misnamed_gait = Bars {
+        name: "Wa lk".to_string(),
+        ..bars_of(&robot, "walk")
+    };
+    let refusal = try_bars(&misnamed_gait, &twin).expect_err("the name is invalid");
+    assert_eq!(refusal.alternatives, []);
 }
