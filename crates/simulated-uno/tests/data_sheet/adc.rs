@@ -73,12 +73,9 @@ fn the_result_for_the_bandgap_is_its_ratio_to_the_supply() {
         uno.set_bandgap_mv(bandgap_mv);
         uno.run_ms(3);
         let expected_code = (bandgap_mv * 1024.0 / supply_mv) as u16;
-        assert!(conversion_results(&uno).len() > 2);
-        assert!(
-            conversion_results(&uno)
-                .iter()
-                .all(|result| *result == expected_code)
-        );
+        let results = conversion_results(&uno);
+        assert!(results.len() > 2);
+        assert!(results.iter().all(|result| *result == expected_code));
     }
 }
 
@@ -278,11 +275,8 @@ fn a_voltage_is_sampled_at_the_time_of_table_24_1() {
             uno.run_ms(1);
             conversion_results(&uno)[0]
         };
-        assert_eq!(
-            (result_after(sampled_clock), result_after(too_late_clock)),
-            (512, 0),
-            "{body}"
-        );
+        let results = [sampled_clock, too_late_clock].map(result_after);
+        assert_eq!(results, [512, 0], "{body}");
     }
 }
 

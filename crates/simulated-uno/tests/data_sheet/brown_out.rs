@@ -88,10 +88,7 @@ fn a_ramp_continues_while_it_holds_the_chip_in_reset() {
     set_supply_and_run(&mut uno, 2000.0);
     uno.ramp_supply_mv(5000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
-    assert_eq!(
-        reset_causes(&uno),
-        [ResetCause::PowerOn, ResetCause::PowerOn]
-    );
+    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn; 2]);
 }
 
 #[test]
@@ -105,10 +102,7 @@ fn without_brown_out_detection_the_chip_runs_down_to_the_power_on_level() {
     set_supply_and_run(&mut uno, 1390.0);
     assert!(uno.is_held_in_reset());
     set_supply_and_run(&mut uno, 1410.0);
-    assert_eq!(
-        reset_causes(&uno),
-        [ResetCause::PowerOn, ResetCause::PowerOn]
-    );
+    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn; 2]);
     uno.set_brown_out_mv(Some(4300.0));
     uno.run_cycles(10);
     assert!(uno.is_held_in_reset());
@@ -173,10 +167,7 @@ fn after_power_on_the_chip_waits_until_the_supply_is_high_enough() {
     uno.ramp_supply_mv(5000.0, CYCLES_PER_MS);
     uno.run_ms(2);
     assert_eq!(mark_values(&uno)[0], 1);
-    assert_eq!(
-        reset_causes(&uno),
-        [ResetCause::PowerOn, ResetCause::PowerOn]
-    );
+    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn; 2]);
 }
 
 #[test]

@@ -34,11 +34,8 @@ fn a_closed_contact_pulls_its_pin_low_and_the_pull_up_raises_it_again() {
         };
         for _ in 0..2 {
             for closed_contacts in [0, 1, 2, 4, 7, 3, 0, 5] {
-                assert_eq!(
-                    levels_with(&mut uno, closed_contacts),
-                    Some(7 & !closed_contacts),
-                    "{fidelity:?}"
-                );
+                let levels = levels_with(&mut uno, closed_contacts);
+                assert_eq!(levels, Some(7 & !closed_contacts), "{fidelity:?}");
             }
             uno.reset();
         }

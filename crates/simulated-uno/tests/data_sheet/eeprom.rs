@@ -4,8 +4,8 @@ use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Uno};
 
 use super::{
-    CORRECTION_IS_OBSOLETE, intervals, mark_cycles, mark_values, new_uno, pulse_widths, uno_after,
-    uno_after_ms,
+    CORRECTION_IS_OBSOLETE, assert_within, intervals, mark_cycles, mark_values, new_uno,
+    pulse_widths, uno_after, uno_after_ms,
 };
 
 /// Cycles of an operation that erases and writes. Table 8-1: "Erase and Write in one operation (Atomic Operation)",
@@ -174,10 +174,7 @@ fn eepe_reads_one_for_as_long_as_table_8_1_says() {
         let operation = uno.eeprom_operations()[0];
         assert_eq!((operation.address, operation.mode), (7, expected_mode));
         let busy_cycles = uno.marks()[0].cycle - operation.cycle;
-        assert!(
-            (duration..duration + 10).contains(&busy_cycles),
-            "{busy_cycles}"
-        );
+        assert_within(duration..duration + 10, busy_cycles);
     }
 }
 
@@ -189,16 +186,10 @@ fn erasing_sets_all_bits_and_writing_alone_clears_some() {
     let uno = run_once(body, 30);
     assert_eq!(uno.eeprom()[..4], [0x05, 0xff, 0xf0, 0xff]);
     let operations = uno.eeprom_operations();
-    let old_values: Vec<u8> = operations
-        .iter()
-        .map(|operation| operation.old_value)
-        .collect();
-    let new_values: Vec<u8> = operations
-        .iter()
-        .map(|operation| operation.new_value)
-        .collect();
-    assert_eq!(old_values, [0xff, 0x0f, 0xff, 0x0f, 0xff, 0x0f]);
-    assert_eq!(new_values, [0x0f, 0x05, 0x0f, 0xff, 0x0f, 0xf0]);
+    let old_values = operations.iter().map(|operation| operation.old_value);
+    let new_values = operations.iter().map(|operation| operation.new_value);
+    assert!(old_values.eq([0xff, 0x0f, 0xff, 0x0f, 0xff, 0x0f]));
+    assert!(new_values.eq([0x0f, 0x05, 0x0f, 0xff, 0x0f, 0xf0]));
 }
 
 #[test]
@@ -276,7 +267,7 @@ fn the_ready_interrupt_is_requested_as_long_as_eepe_is_zero() {
     );
     let starts: Vec<u64> = uno.eeprom_operations().iter().map(|o| o.cycle).collect();
     for interval in intervals(&starts) {
-        assert!((ATOMIC_CYCLES..ATOMIC_CYCLES + 150).contains(&interval));
+        assert_within(ATOMIC_CYCLES..ATOMIC_CYCLES + 150, interval);
     }
 }
 
@@ -323,17 +314,11 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
     uno.run_ms(5);
     assert_eq!(uno.eeprom()[3], 0x42);
     let duration = uno.marks()[2].cycle - uno.eeprom_operations()[0].cycle;
-    assert!(
-        (SINGLE_CYCLES..SINGLE_CYCLES + 20).contains(&duration),
-        "{duration}"
-    );
+    assert_within(SINGLE_CYCLES..SINGLE_CYCLES + 20, duration);
     uno.reset();
     uno.run_cycles(100);
-    assert_eq!(
-        mark_values(&uno)[3],
-        0x00,
-        "a reset clears EEPM while the EEPROM is idle"
-    );
+    let value = mark_values(&uno)[3];
+    assert_eq!(value, 0, "a reset clears EEPM while the EEPROM is idle");
 }
 
 #[test]

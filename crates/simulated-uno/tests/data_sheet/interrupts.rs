@@ -71,10 +71,8 @@ fn interrupts_are_counted_with_their_cycles() {
     let uno = uno_after(100_000, assemble(TICK_PROGRAM));
     let statistics = uno.interrupts();
     assert_eq!(statistics.len(), 1);
-    assert_eq!(
-        simulated_uno::vector_name(statistics[0].vector),
-        "TIMER1_COMPA"
-    );
+    let name = simulated_uno::vector_name(statistics[0].vector);
+    assert_eq!(name, "TIMER1_COMPA");
     assert_eq!(statistics[0].entries, 9);
     // Each interrupt takes entry 8, jmp 3, out 1, out 1, reti 4.
     assert_eq!(statistics[0].cycles, 9 * 17);

@@ -90,3 +90,8 @@ fn transmitted_bytes(uno: &Uno) -> Vec<u8> {
 fn reset_causes(uno: &Uno) -> Vec<ResetCause> {
     uno.reset_events().iter().map(|reset| reset.cause).collect()
 }
+
+#[track_caller]
+fn assert_within(range: std::ops::Range<u64>, cycles: u64) {
+    assert!(range.contains(&cycles), "{cycles}, not {range:?}");
+}

@@ -48,10 +48,7 @@ fn a_power_cut_in_the_write_phase_leaves_the_new_byte_with_the_chosen_bits_set()
         assert_eq!(*uno.run_ms(20), State::Off);
         assert_eq!(uno.eeprom()[..2], [0x35, 0x5c | ones]);
         let operations = uno.eeprom_operations();
-        assert_eq!(
-            [operations[0].is_torn, operations[1].is_torn],
-            [false, true]
-        );
+        assert!(!operations[0].is_torn && operations[1].is_torn);
         let elapsed_cycles = uno.cycle() - operations[1].cycle;
         assert!(
             elapsed_cycles.abs_diff(ATOMIC_CYCLES / 4 * 3) < 10,
@@ -108,10 +105,7 @@ fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);
     assert_eq!(mark_values(&uno), [0x35 | 0x08]);
-    assert_eq!(
-        reset_causes(&uno),
-        [ResetCause::PowerOn, ResetCause::PowerOn]
-    );
+    assert_eq!(reset_causes(&uno), [ResetCause::PowerOn; 2]);
 }
 
 #[test]

@@ -4,8 +4,8 @@ use simulated_uno::avr_gcc::compile_c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
 use super::{
-    FIDELITIES, intervals, mark_values, new_uno, transmitted_bytes, uno_after, uno_after_ms,
-    unos_after,
+    FIDELITIES, assert_within, intervals, mark_values, new_uno, transmitted_bytes, uno_after,
+    uno_after_ms, unos_after,
 };
 
 /// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's baud rate.
@@ -52,10 +52,7 @@ fn an_echo_arrives_a_frame_after_its_byte() {
     let echo_cycles = uno.transmitted()[0].cycle - start;
     // The byte is received in the middle of its stop bit; the polling loop takes up to about 20 cycles.
     let earliest_cycles = (0.95 * FRAME_CYCLES) as u64 + UNO_FRAME_CYCLES;
-    assert!(
-        (earliest_cycles..earliest_cycles + 30).contains(&echo_cycles),
-        "{echo_cycles}, not {earliest_cycles}"
-    );
+    assert_within(earliest_cycles..earliest_cycles + 30, echo_cycles);
 }
 
 #[test]
@@ -65,11 +62,8 @@ fn bytes_are_sent_back_to_back_in_frames_of_ten_bits() {
     let frame_ends: Vec<u64> = uno.transmitted().iter().map(|byte| byte.cycle).collect();
     assert!(frame_ends.len() > 100);
     // A frame may end in the middle of an instruction; this does not delay the following frames.
-    assert!(
-        intervals(&frame_ends)
-            .iter()
-            .all(|interval| *interval == UNO_FRAME_CYCLES)
-    );
+    let mut intervals = intervals(&frame_ends).into_iter();
+    assert!(intervals.all(|interval| interval == UNO_FRAME_CYCLES));
 }
 
 #[test]
@@ -233,10 +227,9 @@ fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_to_be_read() {
     let statuses_with = |broken_index: usize| {
         let mut uno = uno_after(3200, program(body));
         for (index, byte) in b"abc".iter().enumerate() {
-            if index == broken_index {
-                uno.send_with_framing_error(&[*byte]);
-            } else {
-                uno.send(&[*byte]);
+            match index == broken_index {
+                true => uno.send_with_framing_error(&[*byte]),
+                false => uno.send(&[*byte]),
             }
         }
         uno.run_ms(3);
@@ -287,9 +280,6 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_divided() {
     assert_eq!(undivided_marks.len(), 5);
     let arrival_cycle = 12_345 + (0.95 * FRAME_CYCLES).ceil() as u64;
     // From arrival to mark: entry from sleep 8, jmp 3, a few pushes and the read of UDR0.
-    assert!(
-        (arrival_cycle..arrival_cycle + 40).contains(&undivided_marks[0].cycle),
-        "{undivided_marks:?}"
-    );
+    assert_within(arrival_cycle..arrival_cycle + 40, undivided_marks[0].cycle);
     assert_eq!(run(1000), undivided_marks);
 }

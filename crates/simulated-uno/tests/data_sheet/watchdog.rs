@@ -4,7 +4,8 @@ use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
 use super::{
-    CORRECTION_IS_OBSOLETE, intervals, mark_cycles, mark_values, new_uno, uno_after, uno_after_ms,
+    CORRECTION_IS_OBSOLETE, assert_within, intervals, mark_cycles, mark_values, new_uno, uno_after,
+    uno_after_ms,
 };
 
 /// The shortest time-out, 2 048 cycles of the 128 kHz oscillator, in CPU cycles.
@@ -65,10 +66,7 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
         let uno = uno_after(expected + CYCLES_PER_MS, program(&body));
         assert_eq!(watchdog_reset_cycles(&uno).len(), 1, "WDP = {wdp}");
         let elapsed_cycles = cycles_to_reset(&uno, 0);
-        assert!(
-            (expected..expected + 12).contains(&elapsed_cycles),
-            "{elapsed_cycles}"
-        );
+        assert_within(expected..expected + 12, elapsed_cycles);
     }
 }
 
@@ -129,11 +127,8 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
     // "Within the next four clock cycles, write the WDE and Watchdog prescaler bits
     // (WDP) as desired, but with the WDCE bit cleared" (11.8.2).
     for (nops, is_off) in [(0, true), (2, true), (3, false), (8, false)] {
-        assert_eq!(
-            watchdog_reset_cycles(&switch_off_after_nops(nops)).is_empty(),
-            is_off,
-            "{nops} nops"
-        );
+        let resets = watchdog_reset_cycles(&switch_off_after_nops(nops));
+        assert_eq!(resets.is_empty(), is_off, "{nops} nops");
     }
 }
 
@@ -186,10 +181,8 @@ fn hardware_clears_wdce_after_four_cycles() {
          lds r18, WDTCSR $ lds r19, WDTCSR $ lds r20, WDTCSR
          out GPIOR0, r18 $ out GPIOR0, r19 $ out GPIOR0, r20
     end: rjmp end";
-    assert_eq!(
-        mark_values(&uno_after(50, assemble(source))),
-        [0x18, 0x18, 0x08]
-    );
+    let uno = uno_after(50, assemble(source));
+    assert_eq!(mark_values(&uno), [0x18, 0x18, 0x08]);
 }
 
 #[test]
@@ -214,11 +207,8 @@ fn interrupt_and_reset_mode_warns_first_and_then_resets() {
             set(0x48); sei(); for (;;) {} }";
     let uno = run(body, 40);
     assert_eq!(mark_values(&uno), [0x08]);
-    let elapsed_cycles = cycles_to_reset(&uno, 0);
-    assert!(
-        (MIN_TIMEOUT_CYCLES - 100..MIN_TIMEOUT_CYCLES).contains(&elapsed_cycles),
-        "{elapsed_cycles}"
-    );
+    let expected = MIN_TIMEOUT_CYCLES - 100..MIN_TIMEOUT_CYCLES;
+    assert_within(expected, cycles_to_reset(&uno, 0));
 }
 
 #[test]
@@ -229,11 +219,8 @@ fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() 
         if (MCUSR & 8) { MCUSR = 0; set(0); for (;;) {} }
         GPIOR0 = 1; set(0x48); for (;;) {} }";
     let uno = run(body, 40);
-    let elapsed_cycles = cycles_to_reset(&uno, 0);
-    assert!(
-        (2 * MIN_TIMEOUT_CYCLES..2 * MIN_TIMEOUT_CYCLES + 12).contains(&elapsed_cycles),
-        "{elapsed_cycles}"
-    );
+    let expected = 2 * MIN_TIMEOUT_CYCLES..2 * MIN_TIMEOUT_CYCLES + 12;
+    assert_within(expected, cycles_to_reset(&uno, 0));
 }
 
 #[test]
@@ -247,16 +234,10 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
         for (;;) {} }";
     let uno = run(body, 128 + 40);
     assert_eq!(mark_values(&uno), [8, 8, 8, 8, 8, 8]);
-    let reset_cycles = watchdog_reset_cycles(&uno);
     // The reset occurs at the end of the instruction in which the time-out occurs.
-    assert!(
-        (reset_cycles[1] - reset_cycles[0]).abs_diff(MIN_TIMEOUT_CYCLES) < 3,
-        "{reset_cycles:?}"
-    );
-    assert!(
-        (reset_cycles[2] - reset_cycles[1]).abs_diff(MIN_TIMEOUT_CYCLES) < 3,
-        "{reset_cycles:?}"
-    );
+    for interval in &intervals(&watchdog_reset_cycles(&uno))[..2] {
+        assert_within(MIN_TIMEOUT_CYCLES - 2..MIN_TIMEOUT_CYCLES + 3, *interval);
+    }
 
     let cleared_uno = run(
         "int main(void) {

@@ -94,6 +94,13 @@ impl Run {
         counts
     }
 
+    #[track_caller]
+    fn assert_recovered(&self, lost_byte: usize) {
+        if let Err(error) = &self.result {
+            panic!("byte {lost_byte}: {error}");
+        }
+    }
+
     fn error_message(&self) -> String {
         let error = self.result.as_ref().expect_err("the image is not written");
         error.to_string()
@@ -137,11 +144,7 @@ fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
     let counts = run.assert_written();
     assert_eq!((counts.written, counts.kept), (5, 0));
     assert_eq!(run.reported_contents, ["the board has no program"]);
-    assert!(
-        run.board.flash[0x280..0x7e00]
-            .iter()
-            .all(|&byte| byte == 0xff)
-    );
+    assert!(run.board.flash[0x280..0x7e00] == [0xff; 0x7e00 - 0x280]);
     assert_eq!((run.board.reset_count, run.retry_count), (1, 0));
 }
 
@@ -204,10 +207,8 @@ fn a_board_that_never_answers_is_reset_four_times_and_not_written() {
     board.is_mute = true;
     let run = run(board);
     assert!(matches!(run.result, Err(UploadError::NoLoader)));
-    assert!(
-        run.error_message()
-            .starts_with("no boot loader answers. Is it a UNO or a Nano?")
-    );
+    let message = run.error_message();
+    assert!(message.starts_with("no boot loader answers. Is it a UNO or a Nano?"));
     assert_eq!((run.board.reset_count, run.retry_count), (4, 3));
     assert!(run.board.written_addresses.is_empty());
 }
@@ -235,10 +236,8 @@ fn a_board_that_never_stops_sending_is_not_taken_for_a_boot_loader() {
     let (image, target) = (image(), Target::default());
     let result = block_on(upload(&mut loader, &image, target, &mut |_| {}));
     assert!(matches!(result, Err(UploadError::NoLoader)));
-    assert!(matches!(
-        block_on(identify(&mut loader)),
-        Err(UploadError::NoLoader)
-    ));
+    let result = block_on(identify(&mut loader));
+    assert!(matches!(result, Err(UploadError::NoLoader)));
 }
 
 #[test]
@@ -248,19 +247,15 @@ fn a_board_is_identified_by_its_boot_loader_and_restarted() {
         let kind = block_on(identify(&mut loader));
         let board = loader.into_board();
         assert!(board.written_addresses.is_empty());
-        (
-            kind.map_err(|error| error.to_string()),
-            board.has_started_program,
-        )
+        let kind = kind.map_err(|error| error.to_string());
+        (kind, board.has_started_program)
     };
-    assert_eq!(
-        identify_board(board_with_image()),
-        (Ok(LoaderKind::Optiboot), true)
-    );
-    assert_eq!(
-        identify_board(BoardDouble::old_nano()),
-        (Ok(LoaderKind::AtmegaBoot), true)
-    );
+    for (board, kind) in [
+        (board_with_image(), LoaderKind::Optiboot),
+        (BoardDouble::old_nano(), LoaderKind::AtmegaBoot),
+    ] {
+        assert_eq!(identify_board(board), (Ok(kind), true));
+    }
     let mut board_with_other_chip = BoardDouble::blank();
     board_with_other_chip.signature = [0x1e, 0x95, 0x14];
     let (refusal, has_started) = identify_board(board_with_other_chip);
@@ -309,11 +304,7 @@ fn an_upload_recovers_from_the_loss_of_any_byte_to_the_board() {
         let mut board = BoardDouble::with(&old_contents);
         board.lost_byte_to_board = Some(lost_byte);
         let run = run(board);
-        assert!(
-            run.result.is_ok(),
-            "byte {lost_byte}: {}",
-            run.error_message()
-        );
+        run.assert_recovered(lost_byte);
         let flash = &run.board.flash;
         assert!(flash[..600] == pattern_bytes(600, 3), "byte {lost_byte}");
         assert_eq!(
@@ -339,11 +330,7 @@ fn an_upload_recovers_from_the_loss_of_any_byte_from_the_board() {
         let mut board = BoardDouble::with(&old_contents);
         board.lost_byte_from_board = Some(lost_byte);
         let run = run(board);
-        assert!(
-            run.result.is_ok(),
-            "byte {lost_byte}: {}",
-            run.error_message()
-        );
+        run.assert_recovered(lost_byte);
         run.assert_written();
     }
 }
@@ -385,9 +372,7 @@ fn a_board_unplugged_before_the_first_page_is_unchanged() {
     let mut board = BoardDouble::with(&[9; 500]);
     board.unplugged_after_pages = Some(0);
     let run = run(board);
-    assert!(
-        run.error_message()
-            .ends_with("Nothing was written: the board is unchanged")
-    );
+    let message = run.error_message();
+    assert!(message.ends_with("Nothing was written: the board is unchanged"));
     assert_eq!(run.board.flash[..500], [9; 500]);
 }

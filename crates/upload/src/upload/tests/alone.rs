@@ -97,11 +97,7 @@ fn an_upload_of_a_robot_alone_recovers_from_the_loss_of_any_byte() {
     let expected_image = firmware_image("paper");
     let undisturbed_board = run_with(BoardDouble::with(&old_flash), &paper).board;
     let assert_recovered = |run: &Run, lost_byte: usize| {
-        assert!(
-            run.result.is_ok(),
-            "byte {lost_byte}: {}",
-            run.error_message()
-        );
+        run.assert_recovered(lost_byte);
         assert!(
             run.board.flash[..expected_image.end()] == *expected_image.bytes(),
             "byte {lost_byte}"

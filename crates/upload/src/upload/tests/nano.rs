@@ -36,21 +36,11 @@ fn an_upload_to_an_old_nano_recovers_from_the_loss_of_any_byte_to_the_board() {
     assert!(byte_count > 1000, "{byte_count} bytes");
     for lost_byte in 0..byte_count {
         let run = run_with_lost_byte(Some(lost_byte));
-        assert!(
-            run.result.is_ok(),
-            "byte {lost_byte}: {}",
-            run.error_message()
-        );
-        assert_eq!(
-            robot_name(&run.board).as_deref(),
-            Some("large"),
-            "byte {lost_byte}"
-        );
-        assert!(
-            run.board.reset_count <= 4,
-            "byte {lost_byte}: {} resets",
-            run.board.reset_count
-        );
+        run.assert_recovered(lost_byte);
+        let name = robot_name(&run.board);
+        assert_eq!(name.as_deref(), Some("large"), "byte {lost_byte}");
+        let reset_count = run.board.reset_count;
+        assert!(reset_count <= 4, "byte {lost_byte}: {reset_count} resets");
     }
 }
 
