@@ -14,29 +14,13 @@ pub const EQUATIONS: &[Equation] = &[
         "l1 cos θ1 + l2 cos θ2 - l3 cos θ3 - l4 cos θ4 - l0 = 0 (and sin)",
         "mm",
         |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            Some(loop_gap(
-                [
-                    (links.l1, theta[1]),
-                    (links.l2, theta[2]),
-                    (links.l3, theta[3]),
-                    (links.l4, theta[4]),
-                ],
-                links.l0,
-            ))
+            let [_, theta1, theta2, theta3, theta4, ..] = sample.theta();
+            Some(head_gap(sample, [theta1, theta2, theta3, theta4]))
         },
     )
     .with_clockwise_error(|sample| {
-        let (links, theta) = (&sample.lizard.links, sample.theta());
-        Some(loop_gap(
-            [
-                (links.l1, theta[1]),
-                (links.l2, theta[2]),
-                (links.l3, PI - theta[3]),
-                (links.l4, PI - theta[4]),
-            ],
-            links.l0,
-        ))
+        let [_, theta1, theta2, theta3, theta4, ..] = sample.theta();
+        Some(head_gap(sample, [theta1, theta2, PI - theta3, PI - theta4]))
     }),
     Equation::new(
         "4.2 head, θ3",
@@ -64,17 +48,10 @@ pub const EQUATIONS: &[Equation] = &[
             else {
                 return Some(0.0);
             };
-            let (links, rad_per_deg) = (&sample.lizard.links, PI / 180.0);
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
-            Some(loop_gap(
-                [
-                    (links.l1, theta1 * rad_per_deg),
-                    (links.l2, theta2 * rad_per_deg),
-                    (links.l3, theta3 * rad_per_deg),
-                    (links.l4, vanishing_theta4),
-                ],
-                links.l0,
-            ))
+            let [theta1, theta2, theta3] =
+                [theta1, theta2, theta3].map(|degrees| degrees * (PI / 180.0));
+            Some(head_gap(sample, [theta1, theta2, theta3, vanishing_theta4]))
         },
     )
     .with_special_case("θ4 within 1e-9° of A = 0", error_near_vanishing_a),
@@ -120,11 +97,8 @@ pub const EQUATIONS: &[Equation] = &[
         "R11 + R12 - R13 - R14 - R10 = 0",
         "mm",
         |sample| {
-            let (links, theta, half_travel) = (
-                &sample.lizard.links,
-                sample.theta(),
-                sample.solution.left.s / 2.0,
-            );
+            let (links, theta) = (&sample.lizard.links, sample.theta());
+            let half_travel = sample.solution.left.s / 2.0;
             let sum = polar(links.l11, theta[9]) + polar(links.l12 + half_travel, theta[10])
                 - polar(links.l13 + half_travel, theta[11])
                 - polar(links.l14, theta[12])
@@ -137,11 +111,8 @@ pub const EQUATIONS: &[Equation] = &[
         "R16 + R17 - R18 - R19 - R15 = 0",
         "mm",
         |sample| {
-            let (links, theta, half_travel) = (
-                &sample.lizard.links,
-                sample.theta(),
-                sample.solution.right.s / 2.0,
-            );
+            let (links, theta) = (&sample.lizard.links, sample.theta());
+            let half_travel = sample.solution.right.s / 2.0;
             let sum = polar(links.l16, theta[13]) + polar(links.l17 + half_travel, theta[14])
                 - polar(links.l18 + half_travel, theta[15])
                 - polar(links.l19, theta[16])
@@ -153,91 +124,61 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 left slider halves",
         "θ10 + θ11 = 0",
         "deg",
-        |sample| {
-            Some(angle_error_deg(
-                sample.theta()[10] + sample.theta()[11],
-                0.0,
-            ))
-        },
+        |sample| angle_error(sample, |theta| [theta[10] + theta[11], 0.0]),
     )
-    .with_clockwise_error(|sample| {
-        Some(angle_error_deg(
-            sample.theta()[10] + (PI - sample.theta()[11]),
-            0.0,
-        ))
-    })
+    .with_clockwise_error(|sample| angle_error(sample, |theta| [theta[10] + (PI - theta[11]), 0.0]))
     .with_correction("θ11 = θ10 + 180°", |sample| {
-        Some(angle_error_deg(sample.theta()[11], sample.theta()[10] + PI))
+        angle_error(sample, |theta| [theta[11], theta[10] + PI])
     }),
     Equation::new(
         "4.2 right slider halves",
         "θ14 + θ15 = 0",
         "deg",
-        |sample| {
-            Some(angle_error_deg(
-                sample.theta()[14] + sample.theta()[15],
-                0.0,
-            ))
-        },
+        |sample| angle_error(sample, |theta| [theta[14] + theta[15], 0.0]),
     )
-    .with_clockwise_error(|sample| {
-        Some(angle_error_deg(
-            sample.theta()[14] + (PI - sample.theta()[15]),
-            0.0,
-        ))
-    })
+    .with_clockwise_error(|sample| angle_error(sample, |theta| [theta[14] + (PI - theta[15]), 0.0]))
     .with_correction("θ15 = θ14 + 180°", |sample| {
-        Some(angle_error_deg(sample.theta()[15], sample.theta()[14] + PI))
+        angle_error(sample, |theta| [theta[15], theta[14] + PI])
     }),
     Equation::new("4.2 arm on A1", "θ1 - θ12 + C1 = 0", "deg", |sample| {
-        Some(angle_error_deg(
-            sample.theta()[1] + FRAC_PI_2,
-            sample.theta()[12],
-        ))
+        angle_error(sample, |theta| [theta[1] + FRAC_PI_2, theta[12]])
     }),
     Equation::new("4.2 arm on A2", "θ4 - θ16 + C2 = 0", "deg", |sample| {
-        Some(angle_error_deg(
-            sample.theta()[4] + FRAC_PI_2,
-            sample.theta()[16],
-        ))
+        angle_error(sample, |theta| [theta[4] + FRAC_PI_2, theta[16]])
     })
     .with_clockwise_error(|sample| {
-        Some(angle_error_deg(
-            PI - sample.theta()[4] + FRAC_PI_2,
-            PI - sample.theta()[16],
-        ))
+        angle_error(sample, |theta| [PI - theta[4] + FRAC_PI_2, PI - theta[16]])
     })
     .with_correction("θ16 = θ4 - C2", |sample| {
-        Some(angle_error_deg(
-            sample.theta()[4] - FRAC_PI_2,
-            sample.theta()[16],
-        ))
+        angle_error(sample, |theta| [theta[4] - FRAC_PI_2, theta[16]])
     }),
     Equation::new("4.2 arm on A4", "θ9 - θ5 + C3 = 0", "deg", |sample| {
-        Some(angle_error_deg(
-            sample.theta()[9] + FRAC_PI_2,
-            sample.theta()[5],
-        ))
+        angle_error(sample, |theta| [theta[9] + FRAC_PI_2, theta[5]])
     }),
     Equation::new("4.2 arm on A3", "θ13 - θ8 + C4 = 0", "deg", |sample| {
-        Some(angle_error_deg(
-            sample.theta()[13] + FRAC_PI_2,
-            sample.theta()[8],
-        ))
+        angle_error(sample, |theta| [theta[13] + FRAC_PI_2, theta[8]])
     })
     .with_clockwise_error(|sample| {
-        Some(angle_error_deg(
-            PI - sample.theta()[13] + FRAC_PI_2,
-            PI - sample.theta()[8],
-        ))
+        angle_error(sample, |theta| [PI - theta[13] + FRAC_PI_2, PI - theta[8]])
     })
     .with_correction("θ13 = θ8 + C4", |sample| {
-        Some(angle_error_deg(
-            sample.theta()[13] - FRAC_PI_2,
-            sample.theta()[8],
-        ))
+        angle_error(sample, |theta| [theta[13] - FRAC_PI_2, theta[8]])
     }),
 ];
+
+/// The difference of the two angles that are computed from a sample's thetas, deg.
+fn angle_error(sample: &Sample, angles_of: fn([f64; 17]) -> [f64; 2]) -> Option<f64> {
+    let [a, b] = angles_of(sample.theta());
+    Some(angle_error_deg(a, b))
+}
+
+/// The gap of the head's loop with these angles of l1 to l4, mm.
+fn head_gap(sample: &Sample, [theta1, theta2, theta3, theta4]: [f64; 4]) -> f64 {
+    let Links {
+        l0, l1, l2, l3, l4, ..
+    } = sample.lizard.links;
+    loop_gap([(l1, theta1), (l2, theta2), (l3, theta3), (l4, theta4)], l0)
+}
 
 /// The length of the vector first + second - third - fourth - base, mm; 0 for a closed loop.
 fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {

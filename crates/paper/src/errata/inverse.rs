@@ -15,13 +15,8 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |sample| {
             let links = &sample.lizard.links;
-            arm_error(
-                sample.solution.head.end_point,
-                -links.l0 / 2.0,
-                links.l1,
-                sample.theta()[1],
-                links.l2,
-            )
+            let crank = polar(links.l1, sample.theta()[1]);
+            arm_error(head_point(sample), -links.l0 / 2.0, crank, links.l2)
         },
     ),
     Equation::new(
@@ -30,26 +25,16 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |sample| {
             let links = &sample.lizard.links;
-            arm_error(
-                sample.solution.head.end_point,
-                links.l0 / 2.0,
-                links.l1,
-                sample.theta()[2],
-                links.l2,
-            )
+            let crank = polar(links.l1, sample.theta()[2]);
+            arm_error(head_point(sample), links.l0 / 2.0, crank, links.l2)
         },
     )
     .with_correction(
         "(x11 - l4 cos θ4 - l0/2)² + (y11 - l4 sin θ4)² = l3²",
         |sample| {
             let links = &sample.lizard.links;
-            arm_error(
-                sample.solution.head.end_point,
-                links.l0 / 2.0,
-                links.l4,
-                sample.theta()[4],
-                links.l3,
-            )
+            let crank = polar(links.l4, sample.theta()[4]);
+            arm_error(head_point(sample), links.l0 / 2.0, crank, links.l3)
         },
     ),
     Equation::new(
@@ -58,26 +43,16 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |sample| {
             let links = &sample.lizard.links;
-            arm_error(
-                tail_point(sample),
-                -links.l5 / 2.0,
-                links.l9,
-                sample.theta()[8],
-                links.l8,
-            )
+            let crank = polar(links.l9, sample.theta()[8]);
+            arm_error(tail_point(sample), -links.l5 / 2.0, crank, links.l8)
         },
     )
     .with_correction(
         "the same in a frame turned by 180°: x21, y21 negated, θ8 - 180°",
         |sample| {
             let links = &sample.lizard.links;
-            arm_error(
-                -tail_point(sample),
-                -links.l5 / 2.0,
-                links.l9,
-                sample.theta()[8] - PI,
-                links.l8,
-            )
+            let crank = polar(links.l9, sample.theta()[8] - PI);
+            arm_error(-tail_point(sample), -links.l5 / 2.0, crank, links.l8)
         },
     ),
     Equation::new(
@@ -86,26 +61,16 @@ pub const EQUATIONS: &[Equation] = &[
         "mm in length",
         |sample| {
             let links = &sample.lizard.links;
-            arm_error(
-                tail_point(sample),
-                links.l5 / 2.0,
-                links.l9,
-                sample.theta()[7],
-                links.l8,
-            )
+            let crank = polar(links.l9, sample.theta()[7]);
+            arm_error(tail_point(sample), links.l5 / 2.0, crank, links.l8)
         },
     )
     .with_correction(
         "in the turned frame (x21 - l6 cos θ5 - l5/2)² + (y21 - l6 sin θ5)² = l7²",
         |sample| {
             let links = &sample.lizard.links;
-            arm_error(
-                -tail_point(sample),
-                links.l5 / 2.0,
-                links.l6,
-                sample.theta()[5] - PI,
-                links.l7,
-            )
+            let crank = polar(links.l6, sample.theta()[5] - PI);
+            arm_error(-tail_point(sample), links.l5 / 2.0, crank, links.l7)
         },
     ),
     Equation::new(
@@ -114,22 +79,16 @@ pub const EQUATIONS: &[Equation] = &[
         "mm",
         |sample| {
             let (links, theta) = (&sample.lizard.links, sample.theta());
-            Some(
-                (slider_middle(sample, 0)
-                    - (polar(links.l13, theta[11]) + polar(links.l14, theta[12])) * 0.5)
-                    .length(),
-            )
+            let sum = polar(links.l13, theta[11]) + polar(links.l14, theta[12]);
+            Some((slider_middle(sample, 0) - sum * 0.5).length())
         },
     )
     .with_correction(
         "2 x31 = l11 cos θ9 + l14 cos θ12, from the middle of l10",
         |sample| {
             let (links, theta) = (&sample.lizard.links, sample.theta());
-            Some(
-                (slider_middle(sample, 0)
-                    - (polar(links.l11, theta[9]) + polar(links.l14, theta[12])) * 0.5)
-                    .length(),
-            )
+            let sum = polar(links.l11, theta[9]) + polar(links.l14, theta[12]);
+            Some((slider_middle(sample, 0) - sum * 0.5).length())
         },
     ),
     Equation::new(
@@ -138,30 +97,29 @@ pub const EQUATIONS: &[Equation] = &[
         "mm",
         |sample| {
             let (links, theta) = (&sample.lizard.links, sample.theta());
-            Some(
-                (slider_middle(sample, 1)
-                    - (polar(links.l19, theta[16]) + polar(links.l18, theta[15])) * 0.5)
-                    .length(),
-            )
+            let sum = polar(links.l19, theta[16]) + polar(links.l18, theta[15]);
+            Some((slider_middle(sample, 1) - sum * 0.5).length())
         },
     )
     .with_correction(
         "2 x41 = l16 cos θ13 + l19 cos θ16, from the middle of l15",
         |sample| {
             let (links, theta) = (&sample.lizard.links, sample.theta());
-            Some(
-                (slider_middle(sample, 1)
-                    - (polar(links.l16, theta[13]) + polar(links.l19, theta[16])) * 0.5)
-                    .length(),
-            )
+            let sum = polar(links.l16, theta[13]) + polar(links.l19, theta[16]);
+            Some((slider_middle(sample, 1) - sum * 0.5).length())
         },
     ),
 ];
 
 /// The difference between a coupler's length and the distance from its crank's tip to a point.
-fn arm_error(point: Vector, shaft_x: f64, crank: f64, angle: f64, coupler: f64) -> Option<f64> {
-    let tip = Vector::new(shaft_x, 0.0) + polar(crank, angle);
+fn arm_error(point: Vector, shaft_x: f64, crank: Vector, coupler: f64) -> Option<f64> {
+    let tip = Vector::new(shaft_x, 0.0) + crank;
     Some(((point - tip).length() - coupler).abs())
+}
+
+/// The head point relative to the middle of l0, in chassis axes.
+fn head_point(sample: &Sample) -> Vector {
+    sample.solution.head.end_point
 }
 
 /// The tail point relative to the middle of l5, in chassis axes.

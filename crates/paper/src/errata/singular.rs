@@ -22,103 +22,59 @@ pub const EQUATIONS: &[Equation] = &[
         "5.1 K, head",
         "[-l1 sin θ1, -l4 sin θ4; l1 cos θ1, -l4 cos θ4]",
         "mm/rad",
-        |sample| K_HEAD.printed_error(sample),
+        |sample| K_HEAD.error(sample, -1.0),
     )
     .with_clockwise_error(|sample| K_HEAD.clockwise_error(sample))
     .with_correction("second column +l4 sin θ4, -l4 cos θ4", |sample| {
-        K_HEAD.corrected_error(sample)
+        K_HEAD.error(sample, 1.0)
     }),
     Equation::new(
         "5.1 K, tail",
         "[-l6 sin θ5, -l9 sin θ8; l6 cos θ5, -l9 cos θ8]",
         "mm/rad",
-        |sample| K_TAIL.printed_error(sample),
+        |sample| K_TAIL.error(sample, -1.0),
     )
     .with_clockwise_error(|sample| K_TAIL.clockwise_error(sample))
     .with_correction("second column +l9 sin θ8, -l9 cos θ8", |sample| {
-        K_TAIL.corrected_error(sample)
+        K_TAIL.error(sample, 1.0)
     }),
     Equation::new(
         "5.1 K, left",
         "[l11 sin(C3 - θ5), -l14 sin(C1 + θ1); l11 cos(C3 - θ5), -l14 cos(C1 + θ1)]",
         "mm/rad",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let block = side_block(
-                [links.l11, links.l14],
-                FRAC_PI_2 - theta[5],
-                FRAC_PI_2 + theta[1],
-                -1.0,
-            );
-            Some(largest_difference(
-                &active_block(sample, 4, 3, 0).map(|v| -v),
-                &block,
-            ))
-        },
+        |sample| K_LEFT.side_error(sample, FRAC_PI_2, -1.0),
     )
     .with_correction("+l14 sin(C1 + θ1)", |sample| {
-        let (links, theta) = (&sample.lizard.links, sample.theta());
-        let block = side_block(
-            [links.l11, links.l14],
-            FRAC_PI_2 - theta[5],
-            FRAC_PI_2 + theta[1],
-            1.0,
-        );
-        Some(largest_difference(
-            &active_block(sample, 4, 3, 0).map(|v| -v),
-            &block,
-        ))
+        K_LEFT.side_error(sample, FRAC_PI_2, 1.0)
     }),
     Equation::new(
         "5.1 K, right",
         "[l16 sin(C4 - θ8), -l19 sin(C2 + θ4); l16 cos(C4 - θ8), -l19 cos(C2 + θ4)]",
         "mm/rad",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let block = side_block(
-                [links.l16, links.l19],
-                FRAC_PI_2 - theta[8],
-                FRAC_PI_2 + theta[4],
-                -1.0,
-            );
-            Some(largest_difference(
-                &active_block(sample, 6, 2, 1).map(|v| -v),
-                &block,
-            ))
-        },
+        |sample| K_RIGHT.side_error(sample, FRAC_PI_2, -1.0),
     )
     .with_correction("+l19 sin(C2 + θ4), and C2 = C4 = -90°", |sample| {
-        let (links, theta) = (&sample.lizard.links, sample.theta());
-        let block = side_block(
-            [links.l16, links.l19],
-            -FRAC_PI_2 - theta[8],
-            -FRAC_PI_2 + theta[4],
-            1.0,
-        );
-        Some(largest_difference(
-            &active_block(sample, 6, 2, 1).map(|v| -v),
-            &block,
-        ))
+        K_RIGHT.side_error(sample, -FRAC_PI_2, 1.0)
     }),
     Equation::new(
         "5.1 K*, head",
         "[-l2 sin θ2, -l3 sin θ3; l2 cos θ2, -l3 cos θ3]",
         "mm/rad",
-        |sample| K_STAR_HEAD.printed_error(sample),
+        |sample| K_STAR_HEAD.error(sample, -1.0),
     )
     .with_clockwise_error(|sample| K_STAR_HEAD.clockwise_error(sample))
     .with_correction("second column +l3 sin θ3, -l3 cos θ3", |sample| {
-        K_STAR_HEAD.corrected_error(sample)
+        K_STAR_HEAD.error(sample, 1.0)
     }),
     Equation::new(
         "5.1 K*, tail",
         "[-l7 sin θ6, -l8 sin θ7; l7 cos θ6, -l8 cos θ7]",
         "mm/rad",
-        |sample| K_STAR_TAIL.printed_error(sample),
+        |sample| K_STAR_TAIL.error(sample, -1.0),
     )
     .with_clockwise_error(|sample| K_STAR_TAIL.clockwise_error(sample))
     .with_correction("second column +l8 sin θ7, -l8 cos θ7", |sample| {
-        K_STAR_TAIL.corrected_error(sample)
+        K_STAR_TAIL.error(sample, 1.0)
     }),
     Equation::new(
         "5.1 determinant of the printed K*",
@@ -254,13 +210,14 @@ fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
     Some((pose.type2, sum.to_radians()))
 }
 
-/// The 2x2 block of K or K* for a left and a right bar (crank or coupler) of the head or the tail.
+/// The 2x2 block of K or K* for a left and a right bar (crank or coupler) of the head or the tail, or for the rear and
+/// the front arm of a slider's side.
 struct Block {
     /// Returns the true block, by rows.
     true_block: fn(&Sample) -> [f64; 4],
-    /// The paper's numbers of the left and the right bar's angles, 1 for theta1.
+    /// The paper's numbers of the two bars' angles, 1 for theta1.
     angle_numbers: [usize; 2],
-    /// The paper's numbers of the left and the right bar's lengths, 1 for l1.
+    /// The paper's numbers of the two bars' lengths, 1 for l1.
     length_numbers: [usize; 2],
 }
 
@@ -284,47 +241,49 @@ const K_STAR_TAIL: Block = Block {
     angle_numbers: [6, 7],
     length_numbers: [7, 8],
 };
+const K_LEFT: Block = Block {
+    true_block: |sample| active_block(sample, 4, 3, 0).map(|v| -v),
+    angle_numbers: [5, 1],
+    length_numbers: [11, 14],
+};
+const K_RIGHT: Block = Block {
+    true_block: |sample| active_block(sample, 6, 2, 1).map(|v| -v),
+    angle_numbers: [8, 4],
+    length_numbers: [16, 19],
+};
 
 impl Block {
-    /// The largest error of the printed block.
-    fn printed_error(&self, sample: &Sample) -> Option<f64> {
-        let right_theta = sample.theta()[self.angle_numbers[1]];
-        Some(largest_difference(
-            &(self.true_block)(sample),
-            &self.block_with(sample, right_theta, -1.0),
-        ))
+    /// The largest error of the block with this sign before the right bar's sine: -1.0 as printed, 1.0 as corrected.
+    fn error(&self, sample: &Sample, sign: f64) -> Option<f64> {
+        self.side_error(sample, 0.0, sign)
+    }
+
+    /// The same for the arms of a slider's side. `constant` is their angle from the cranks, rad.
+    fn side_error(&self, sample: &Sample, constant: f64, sign: f64) -> Option<f64> {
+        let [rear, front] = self.angle_numbers.map(|number| sample.theta()[number]);
+        let block = self.block_with(sample, [rear - constant, front + constant], sign);
+        Some(largest_difference(&(self.true_block)(sample), &block))
     }
 
     /// The largest error of the printed block if the right bar's angle is measured clockwise from -x. Then the
     /// derivative with respect to this angle has the opposite sign.
     fn clockwise_error(&self, sample: &Sample) -> Option<f64> {
         let [a, b, c, d] = (self.true_block)(sample);
-        let right_theta = PI - sample.theta()[self.angle_numbers[1]];
-        Some(largest_difference(
-            &[a, -b, c, -d],
-            &self.block_with(sample, right_theta, -1.0),
-        ))
+        let [left, right] = self.angle_numbers.map(|number| sample.theta()[number]);
+        let block = self.block_with(sample, [left, PI - right], -1.0);
+        Some(largest_difference(&[a, -b, c, -d], &block))
     }
 
-    /// The largest error of the corrected block.
-    fn corrected_error(&self, sample: &Sample) -> Option<f64> {
-        let right_theta = sample.theta()[self.angle_numbers[1]];
-        Some(largest_difference(
-            &(self.true_block)(sample),
-            &self.block_with(sample, right_theta, 1.0),
-        ))
-    }
-
-    /// The block in the paper's form. `right_theta` is the right bar's angle (rad); `sign` is the sign of its sine.
-    fn block_with(&self, sample: &Sample, right_theta: f64, sign: f64) -> [f64; 4] {
+    /// The block in the paper's form, from the angles of the two bars, rad. `sign` is the sign of the right one's sine.
+    fn block_with(&self, sample: &Sample, thetas: [f64; 2], sign: f64) -> [f64; 4] {
         let lengths = sample.lizard.links.to_array();
-        let ([left_bar, right_bar], left_theta) =
-            (self.length_numbers, sample.theta()[self.angle_numbers[0]]);
+        let [left, right] = self.length_numbers.map(|number| lengths[number]);
+        let [(left_sin, left_cos), (right_sin, right_cos)] = thetas.map(f64::sin_cos);
         [
-            -lengths[left_bar] * left_theta.sin(),
-            sign * lengths[right_bar] * right_theta.sin(),
-            lengths[left_bar] * left_theta.cos(),
-            -lengths[right_bar] * right_theta.cos(),
+            -left * left_sin,
+            sign * right * right_sin,
+            left * left_cos,
+            -right * right_cos,
         ]
     }
 }
@@ -361,17 +320,6 @@ fn passive_block(sample: &Sample, column: usize) -> [f64; 4] {
         k[column][column + 1],
         k[column + 1][column],
         k[column + 1][column + 1],
-    ]
-}
-
-/// The 2x2 block of a slider's side. The first column is the rear arm's. The second column is the front arm's, with
-/// `sign` before the sine.
-fn side_block([rear, front]: [f64; 2], rear_angle: f64, front_angle: f64, sign: f64) -> [f64; 4] {
-    [
-        rear * rear_angle.sin(),
-        sign * front * front_angle.sin(),
-        rear * rear_angle.cos(),
-        -front * front_angle.cos(),
     ]
 }
 
