@@ -43,31 +43,14 @@ pub struct AnalysedFilm {
     pub path: Vec<PathPoint>,
     /// The camera.
     pub camera: CameraEstimate,
-    scene: Scene,
+    pub(crate) scene: Scene,
     /// The tags of each picture of the path.
-    frames: Vec<Frame>,
+    pub(crate) frames: Vec<Frame>,
     /// Given height of the deck tag above the floor, mm.
-    given_deck_height: f64,
+    pub(crate) given_deck_height: f64,
 }
 
 impl AnalysedFilm {
-    /// Creates an analysed film; `frames` has one frame for each point of the path.
-    pub(crate) fn new(
-        path: Vec<PathPoint>,
-        camera: CameraEstimate,
-        scene: Scene,
-        frames: Vec<Frame>,
-        given_deck_height: f64,
-    ) -> Self {
-        Self {
-            path,
-            camera,
-            scene,
-            frames,
-            given_deck_height,
-        }
-    }
-
     /// Measures a gait between two times, s, or in the entire film.
     ///
     /// # Errors

@@ -157,7 +157,7 @@ impl Film {
         }
         self.check_distance(&scene, &path)?;
         let [camera_height, tilt] = scene.camera().height_and_tilt();
-        let camera_estimate = CameraEstimate {
+        let camera = CameraEstimate {
             focal_length: scene.focal_length(),
             height: camera_height,
             tilt,
@@ -165,13 +165,13 @@ impl Film {
             has_camera_moved,
             deck_height,
         };
-        Ok(AnalysedFilm::new(
+        Ok(AnalysedFilm {
             path,
-            camera_estimate,
+            camera,
             scene,
             frames,
-            setup.deck_height,
-        ))
+            given_deck_height: setup.deck_height,
+        })
     }
 
     /// Checks that every floor tag is visible at least once, and the deck tag in most pictures.

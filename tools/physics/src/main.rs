@@ -283,20 +283,15 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         }
     }
     if is_writing {
-        std::fs::write(crate_folder().join("figures.json"), figures.to_json())?;
-        std::fs::write(
-            crate_folder().join("surfaces.json"),
-            format_blocks(&surfaces),
-        )?;
-        std::fs::write(
-            crate_folder().join("assumptions.json"),
-            format_lines(&by_assumption),
-        )?;
-        std::fs::write(crate_folder().join("pads.json"), format_lines(&by_shape))?;
-        std::fs::write(
-            crate_folder().join("servos.json"),
-            format_blocks(&by_servos),
-        )?;
+        for (file, text) in [
+            ("figures.json", figures.to_json()),
+            ("surfaces.json", format_blocks(&surfaces)),
+            ("assumptions.json", format_lines(&by_assumption)),
+            ("pads.json", format_lines(&by_shape)),
+            ("servos.json", format_blocks(&by_servos)),
+        ] {
+            std::fs::write(crate_folder().join(file), text)?;
+        }
         println!("physics: written to tools/physics; `make docs` updates the pages");
     } else if one_in == 1 && stored_figures.walk_count() != figures.walk_count() {
         faults.push(format!(
