@@ -62,17 +62,12 @@ mod tests {
             name: "paper".to_owned(),
             hash: "1a2b3c4d".to_owned(),
         };
-        for (line, robot) in [
-            (
-                "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands",
-                Some(paper),
-            ),
-            (
-                "# lizard 0.2.0 without a robot, send help for the commands",
-                None,
-            ),
+        for (words, robot) in [
+            ("robot paper 1a2b3c4d", Some(paper)),
+            ("without a robot", None),
         ] {
-            let banner = Banner::parse(line).expect("the line is a banner");
+            let line = format!("# lizard 0.2.0 {words}, send help for the commands");
+            let banner = Banner::parse(&line).expect("the line is a banner");
             assert_eq!((banner.version.as_str(), banner.robot), ("0.2.0", robot));
         }
     }

@@ -132,11 +132,10 @@ impl Calibration {
     #[must_use]
     pub fn from_cal_answer(lines: &[String]) -> Option<Self> {
         let text_after = |keyword: &str| {
-            let mut texts = lines.iter().filter_map(|line| {
+            lines.iter().find_map(|line| {
                 let line_text = line.strip_prefix("# ")?.strip_prefix(keyword)?;
                 line_text.strip_prefix(' ')
-            });
-            texts.next()
+            })
         };
         let servos: Option<Vec<_>> = SERVO_NAMES
             .iter()

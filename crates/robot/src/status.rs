@@ -44,11 +44,8 @@ impl Status {
     pub fn parse(answer: &str) -> Option<Self> {
         let pairs = answer.strip_prefix("ok ")?;
         let value_of = |key: &str| {
-            let pairs = pairs.split(' ').filter_map(|pair| pair.split_once('='));
-            pairs
-                .into_iter()
-                .find(|(name, _)| *name == key)
-                .map(|(_, value)| value)
+            let mut pairs = pairs.split(' ').filter_map(|pair| pair.split_once('='));
+            pairs.find_map(|(name, value)| (name == key).then_some(value))
         };
         let number_of = |key: &str| value_of(key)?.parse().ok();
         let count_of = |key: &str| value_of(key).and_then(|n| n.parse().ok()).unwrap_or(0);
@@ -154,16 +151,14 @@ mod tests {
 
     #[test]
     fn a_fault_and_a_hold_by_the_guard_are_in_capitals() {
-        let fault_status = WALKING_STATUS.replace("fault=none", "fault=supply");
-        let line = Status::parse(&fault_status)
-            .expect("the line is a status")
-            .status_line();
-        assert!(line.contains("FAULT supply"), "{line}");
-        let held_status = WALKING_STATUS.replace("clear", "held");
-        let line = Status::parse(&held_status)
-            .expect("the line is a status")
-            .status_line();
-        assert!(line.contains("HELD by the guard"), "{line}");
+        for (old, new, phrase) in [
+            ("fault=none", "fault=supply", "FAULT supply"),
+            ("clear", "held", "HELD by the guard"),
+        ] {
+            let status = Status::parse(&WALKING_STATUS.replace(old, new));
+            let line = status.expect("the line is a status").status_line();
+            assert!(line.contains(phrase), "{line}");
+        }
     }
 
     #[test]

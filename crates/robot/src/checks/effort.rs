@@ -118,13 +118,4 @@ impl Effort {
         }
         low
     }
-
-    /// Returns the largest torque that a servo needs for pads, joints and body, N mm.
-    #[must_use]
-    pub fn max_load_torque(&self) -> f64 {
-        let samples = self.servos.iter().flat_map(|(_, samples)| samples);
-        samples
-            .map(|sample| sample.load_torque.abs())
-            .fold(0.0, f64::max)
-    }
 }

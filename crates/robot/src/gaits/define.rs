@@ -205,11 +205,8 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
 
 /// Refuses keys outside `allowed`: they are meaningless together with `partner`.
 fn allow_only(table: &Section, allowed: &[&str], partner: &str) -> Checked<()> {
-    match table
-        .key_names()
-        .into_iter()
-        .find(|name| !allowed.contains(name))
-    {
+    let mut names = table.key_names().into_iter();
+    match names.find(|name| !allowed.contains(name)) {
         Some(name) => Err(table.error(name, format!("does not go with {partner}"))),
         None => Ok(()),
     }
@@ -234,13 +231,8 @@ fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Ga
                 duty: table.number("duty", 0.05, 0.95, "of the cycle")?,
             };
             let amplitude = read_amplitude(table)?;
-            let starts = read_leg_values(
-                &table.section("start", &LEG_NAMES)?,
-                None,
-                0.0,
-                1.0,
-                "of the cycle",
-            )?;
+            let section = table.section("start", &LEG_NAMES)?;
+            let starts = read_leg_values(&section, None, 0.0, 1.0, "of the cycle")?;
             starts.map(|start| Stride {
                 waveform: waveform.clone(),
                 start,
@@ -333,13 +325,8 @@ fn read_gains(table: &Section) -> Checked<[f64; 4]> {
     if !table.has_key("gain") {
         return Ok([1.0; 4]);
     }
-    read_leg_values(
-        &table.section("gain", &LEG_NAMES)?,
-        Some(1.0),
-        -4.0,
-        4.0,
-        "(a factor)",
-    )
+    let section = table.section("gain", &LEG_NAMES)?;
+    read_leg_values(&section, Some(1.0), -4.0, 4.0, "(a factor)")
 }
 
 /// Reads a number for each leg, in servo order. Without a default, each leg must have its number.

@@ -185,20 +185,21 @@ mod tests {
         robot_with("paper", &[(NEXT_TABLE, &format!("{keys}\n{NEXT_TABLE}"))])
     }
 
+    fn band_error_and_time(motor: lizard_contact::Motor) -> (f64, f64, f64) {
+        (
+            motor.half_dead_band,
+            motor.full_torque_error,
+            motor.spin_up_time,
+        )
+    }
+
     #[test]
     fn without_a_table_the_servos_are_sg90_by_their_data_sheet() {
         let motors = robot("").expect("the robot is valid").motors();
         for motor in motors.per_servo {
             // 1.8 kg cm; 60 deg in 0.12 s; half of a dead band of 10 us, at 10 us per deg.
             assert!((motor.stall_torque - 176.5197).abs() < 1e-9 && motor.no_load_speed == 500.0);
-            assert_eq!(
-                (
-                    motor.half_dead_band,
-                    motor.full_torque_error,
-                    motor.spin_up_time
-                ),
-                (0.5, 3.0, 0.02)
-            );
+            assert_eq!(band_error_and_time(motor), (0.5, 3.0, 0.02));
         }
         assert_eq!(
             (motors.joints.pin_torque, motors.joints.slider_force),
@@ -217,14 +218,7 @@ mod tests {
             (motor.stall_torque - 176.5197 * 6.0 / 4.8).abs() < 1e-9,
             "the stall torque is that of the model"
         );
-        assert_eq!(
-            (
-                motor.half_dead_band,
-                motor.full_torque_error,
-                motor.spin_up_time
-            ),
-            (0.1, 1.5, 0.005)
-        );
+        assert_eq!(band_error_and_time(motor), (0.1, 1.5, 0.005));
         assert_eq!(
             (motors.joints.pin_torque, motors.joints.slider_force),
             (0.0, 0.3)

@@ -228,6 +228,15 @@ mod tests {
         robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
     }
 
+    /// Reads the paper's robot with these keys of its servos and of its rail, on this friction.
+    fn robot_with_servo_and_rail(servo: &str, rail: &str, friction: &str) -> crate::Robot {
+        let tables = format!(
+            "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{NEXT_TABLE}\nfriction = {friction}"
+        );
+        let servo = format!("[servo]\n{servo}\n[servo.A1]");
+        robot_with("paper", &[("[servo.A1]", &servo), (NEXT_TABLE, &tables)]).expect(rail)
+    }
+
     #[test]
     fn without_a_table_the_board_is_measured_by_a_reference_of_1100_mv() {
         let robot = robot_with("paper", &[]).expect("the paper's robot is valid");
@@ -267,12 +276,7 @@ mod tests {
     #[test]
     fn the_slow_threshold_is_where_the_servos_are_near_their_torque_speed_line() {
         let slow_volts_with = |servo: &str, rail: &str, friction: &str| {
-            let tables = format!(
-                "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{NEXT_TABLE}\nfriction = {friction}"
-            );
-            let servo = format!("[servo]\n{servo}\n[servo.A1]");
-            let robot =
-                robot_with("paper", &[("[servo.A1]", &servo), (NEXT_TABLE, &tables)]).expect(rail);
+            let robot = robot_with_servo_and_rail(servo, rail, friction);
             f64::from(robot.firmware().supplies().rail.slow_mv) / 1000.0
         };
         let sg90_volts = slow_volts_with("", "", "0.6");
@@ -317,18 +321,10 @@ mod tests {
 
     /// Returns two paces of the paper's robot with changed servos, thresholds and friction, percent: its slow pace, and
     /// the highest pace at which no gait exceeds the allowed share of the torque-speed line, found by a search.
-    fn slow_paces(servo: &str, rail: &str, friction: f64) -> [u8; 2] {
-        let tables = format!(
-            "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{NEXT_TABLE}\nfriction = {friction}"
-        );
-        let servo = format!("[servo]\n{servo}\n[servo.A1]");
-        let robot =
-            robot_with("paper", &[("[servo.A1]", &servo), (NEXT_TABLE, &tables)]).expect(rail);
-        let [_, stop, _] = robot
-            .supplies()
-            .rail
-            .expect("the rail is measured")
-            .thresholds;
+    fn slow_paces(servo: &str, rail: &str, friction: &str) -> [u8; 2] {
+        let robot = robot_with_servo_and_rail(servo, rail, friction);
+        let rail = robot.supplies().rail.expect("the rail is measured");
+        let [_, stop, _] = rail.thresholds;
         let servo_volts = robot.servo_type().volts;
         let effort_of = |gait| crate::Effort::of(gait, robot.ground(), &robot.motors());
         let efforts: Vec<_> = robot.gaits().iter().map(effort_of).collect();
@@ -346,24 +342,22 @@ mod tests {
 
     #[test]
     fn the_slow_pace_is_the_fastest_that_the_servos_sustain_at_the_stop_voltage() {
-        let [default_pace, searched_pace] = slow_paces("", "", 0.7);
+        let [default_pace, searched_pace] = slow_paces("", "", "0.7");
         assert_eq!(default_pace, searched_pace);
-        let [rough_pace, searched_pace] = slow_paces("", "", 0.9);
+        let [rough_pace, searched_pace] = slow_paces("", "", "0.9");
         assert_eq!(rough_pace, searched_pace);
         assert!(
             (11..default_pace).contains(&rough_pace) && default_pace < 100,
             "{rough_pace} {default_pace}"
         );
         // The same is true if the threshold is given. A robot that stops at a higher voltage may walk faster.
-        let [given_pace, searched_pace] = slow_paces("", "slow = 4.7\nstop = 4.5", 0.9);
+        let [given_pace, searched_pace] = slow_paces("", "slow = 4.7\nstop = 4.5", "0.9");
         assert_eq!(given_pace, searched_pace);
         assert!(given_pace > rough_pace, "{given_pace} {rough_pace}");
         // The first servos sustain no pace, the second sustain every pace.
-        assert_eq!(
-            slow_paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", 1.2),
-            [10, 10]
-        );
-        assert_eq!(slow_paces("model = \"MG90S\"", "", 0.2), [100, 100]);
+        let slowest_paces = slow_paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", "1.2");
+        assert_eq!(slowest_paces, [10, 10]);
+        assert_eq!(slow_paces("model = \"MG90S\"", "", "0.2"), [100, 100]);
     }
 
     #[test]

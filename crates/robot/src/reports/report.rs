@@ -294,6 +294,14 @@ pub(crate) fn format_component(component: Option<f64>, decimals: usize) -> Strin
 }
 
 /// Rounds a value to this number of decimals. A zero loses its sign.
+/// Formats a turn, deg; empty if there is hardly one.
+pub(crate) fn format_turn(turn: Option<f64>) -> String {
+    match turn {
+        Some(turn) if turn.abs() < 0.05 => String::new(),
+        turn => format_component(turn, 1),
+    }
+}
+
 fn round_to(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding positive zero turns a negative one positive.

@@ -5,7 +5,7 @@ use std::fmt;
 
 use lizard_contact::{Drive, Feet, Ground, Prediction, Stance};
 
-use crate::reports::report::{UNDECIDED_NOTE, column_width, format_component};
+use crate::reports::report::{UNDECIDED_NOTE, column_width, format_component, format_turn};
 use crate::robot::Robot;
 
 /// Excess length of the front left foot in the table that varies the stiffness of the feet, mm.
@@ -154,9 +154,6 @@ impl fmt::Display for Sensitivity {
 
 /// Formats a prediction. A turn that rounds to zero is left out.
 fn format_cell(prediction: &Prediction) -> String {
-    let turn = match prediction.turn {
-        Some(turn) if turn.abs() < 0.05 => String::new(),
-        turn => format_component(turn, 1),
-    };
+    let turn = format_turn(prediction.turn);
     format!("{:>9}{turn:>6}", format_component(prediction.forward, 1))
 }

@@ -6,7 +6,7 @@ use lizard_contact::Prediction;
 
 use crate::checks::{CheckedGait, Effort};
 use crate::measures::ServoType;
-use crate::reports::report::{UNDECIDED_NOTE, column_width, format_component};
+use crate::reports::report::{UNDECIDED_NOTE, column_width, format_component, format_turn};
 use crate::robot::Robot;
 
 /// Paces in the table, as the command `speed` takes them: percent of a gait's own pace.
@@ -143,10 +143,7 @@ fn format_cell(
         movement,
     }: &Cell,
 ) -> String {
-    let turn = match movement.turn {
-        Some(turn) if turn.abs() < 0.05 => String::new(),
-        turn => format_component(turn, 1),
-    };
+    let turn = format_turn(movement.turn);
     format!(
         "{line_share:>9.2}{:>7}{turn:>6}",
         format_component(movement.forward, 1)

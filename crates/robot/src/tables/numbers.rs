@@ -5,8 +5,7 @@
 //! slew limit down. All other numbers are rounded to the nearest integer.
 
 use lizard_avr::Flash;
-use lizard_core::numbers::calibration::Calibration;
-use lizard_core::numbers::calibration::NeededTravel;
+use lizard_core::numbers::calibration::{Calibration, NeededTravel};
 use lizard_core::numbers::couplers::Couplers;
 use lizard_core::numbers::gaits::SAMPLES_PER_WAVE;
 use lizard_core::numbers::limits::Limits;
@@ -242,14 +241,10 @@ mod tests {
             ],
         ];
         for (side, mm) in content.sliders.iter().zip(sides) {
-            let steps = [
-                f64::from(side.offset),
-                f64::from(side.base),
-                f64::from(side.front_arm),
-                f64::from(side.rear_arm),
-                f64::from(side.nominal_length),
-            ];
-            assert_eq!(steps, mm.map(|mm| mm * STEPS_PER_MM));
+            let [base, nominal_length] = [side.base, side.nominal_length].map(i32::from);
+            let [offset, front, rear] = [side.offset, side.front_arm, side.rear_arm].map(i32::from);
+            let steps = [offset, base, front, rear, nominal_length];
+            assert_eq!(steps.map(f64::from), mm.map(|mm| mm * STEPS_PER_MM));
             assert_eq!(side.scale.bits, 8);
         }
         assert_eq!(content.pins, [6, 14, 19, 12]);
@@ -345,19 +340,10 @@ mod tests {
             ([20.0, 38.0, 30.0], true),
             ([20.0, 30.0, 38.0], true),
         ] {
-            let [base, left_crank_length, right_crank_length] = base_and_cranks;
-            let five_bar = kinematics::FiveBar {
-                base,
-                left_crank_length,
-                left_coupler_length: 50.0,
-                right_coupler_length: 50.0,
-                right_crank_length,
-            };
-            assert_eq!(
-                convert_five_bar(&five_bar).can_nearly_stretch,
-                is_near,
-                "{five_bar:?}"
-            );
+            let [base, left, right] = base_and_cranks;
+            let five_bar = kinematics::FiveBar::new([base, left, 50.0, 50.0, right]);
+            let is_found_near = convert_five_bar(&five_bar).can_nearly_stretch;
+            assert_eq!(is_found_near, is_near, "{five_bar:?}");
         }
     }
 

@@ -86,13 +86,7 @@ impl Tables {
                 name_start: names.len() as u16,
                 name_length: gait.name.len() as u16,
                 increment: increment_of(gait),
-                channels: [
-                    &gait_strides[0],
-                    &gait_strides[1],
-                    &gait_strides[2],
-                    &gait_strides[3],
-                ]
-                .map(channel_of),
+                channels: std::array::from_fn(|servo| channel_of(&gait_strides[servo])),
             });
             names.extend(command_of(&gait.name).bytes());
         }

@@ -33,21 +33,17 @@ fn fill_block(page: &str, marker: &str, text: &str) -> String {
 #[ignore = "make docs-check: it takes most of a minute"]
 fn the_page_on_gaits_shows_the_output_of_the_commands() {
     let page = std::fs::read_to_string(GAITS_PAGE).expect(GAITS_PAGE);
-    let mut new_page = fill_block(
-        &page,
-        "lizard gaits",
-        &fence(Report::of(paper()).to_string()),
-    );
-    new_page = fill_block(
-        &new_page,
-        "lizard gaits --sensitivity",
-        &fence(Sensitivity::of(paper()).to_string()),
-    );
-    new_page = fill_block(
-        &new_page,
-        "lizard gaits --servos",
-        &fence(ServoTable::of(paper()).to_string()),
-    );
+    let mut new_page = page.clone();
+    for (command, output) in [
+        ("lizard gaits", Report::of(paper()).to_string()),
+        (
+            "lizard gaits --sensitivity",
+            Sensitivity::of(paper()).to_string(),
+        ),
+        ("lizard gaits --servos", ServoTable::of(paper()).to_string()),
+    ] {
+        new_page = fill_block(&new_page, command, &fence(output));
+    }
     assert_up_to_date(GAITS_PAGE, &page, &new_page);
 }
 

@@ -111,10 +111,9 @@ fn a_struts_lever_arm_is_the_derivative_of_its_length() {
     let strut = robot.strut_with(4.0, 0.0);
     for (leg, plan) in robot.legs().iter().enumerate() {
         for sweep in [-20.0, 0.0, 13.0] {
-            let angle =
-                robot.servos()[leg].neutral + lizard_robot::servo::FORWARD_TURN_SIGN[leg] * sweep;
+            let forward_sign = lizard_robot::servo::FORWARD_TURN_SIGN[leg];
+            let angle = robot.servos()[leg].neutral + forward_sign * sweep;
             let length_at = |lag: f64| {
-                let forward_sign = lizard_robot::servo::FORWARD_TURN_SIGN[leg];
                 let [servo_anchor, leg_anchor] = plan
                     .place_at(angle, angle - forward_sign * lag)
                     .strut_anchors;
@@ -228,22 +227,15 @@ fn a_lag_is_constant_while_no_servo_turns_and_falls_with_the_friction() {
 
 #[test]
 fn a_report_shows_the_share_of_the_movement_with_rigid_legs() {
-    assert_eq!(
-        SpringCost::of(gait(paper(), "walk"), paper().ground()),
-        None
-    );
+    let rigid_cost = SpringCost::of(gait(paper(), "walk"), paper().ground());
+    assert_eq!(rigid_cost, None);
     let cost_of =
         |name| SpringCost::of(gait(paper(), name), &ground_with_strut(0.5)).expect("the legs lag");
     let share_of = |name| cost_of(name).share_of_rigid.expect(name);
     assert!((share_of("trot") - 24.6 / 26.7).abs() < 0.01);
     assert!((share_of("left") - 14.3 / 15.3).abs() < 0.01);
-    assert_eq!(
-        (
-            cost_of("stand").share_of_rigid,
-            cost_of("look").share_of_rigid
-        ),
-        (None, None)
-    );
+    let shares = ["stand", "look"].map(|name| cost_of(name).share_of_rigid);
+    assert_eq!(shares, [None, None]);
 
     let drive = "mount = 0.0\ndrive = { kind = \"strut\", force = 0.5, rate = 0.395 }";
     let robot = paper_with("mount = 0.0", drive).expect("the robot is valid");

@@ -1,28 +1,23 @@
 //! Input pins of robot.toml, and routine steps that end on an input.
 
 use lizard_core::numbers::gaits::{Input, Step};
-use lizard_robot::{Error, Report, Robot, Round, WITHOUT_CONTACTS_NOTE};
+use lizard_robot::{Report, Round, WITHOUT_CONTACTS_NOTE};
 
-use super::{paper, paper_text};
+use super::{paper, paper_text, paper_with_tables};
 
 /// Both inputs, each with a free pin.
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
 /// Reads the paper's robot with additional tables.
-fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
-    Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
-}
 
 /// Returns the error message for these tables, with its line number counted from their first line.
 fn refusal_of(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
     let lines_before = paper_text().trim_end().lines().count() + 1;
-    let line = error.line.expect("the error has a line") - lines_before;
-    error.to_string().replacen(
-        &format!("robot.toml:{}", line + lines_before),
-        &line.to_string(),
-        1,
-    )
+    let line = error.line.expect("the error has a line");
+    let location = format!("robot.toml:{line}");
+    let line_in_tables = (line - lines_before).to_string();
+    error.to_string().replacen(&location, &line_in_tables, 1)
 }
 
 /// Returns kind, gait and count of each record of a routine whose only step is this one.
@@ -41,16 +36,11 @@ fn records_of(step: &str) -> Vec<(u8, u8, u16)> {
 fn a_step_with_an_input_is_two_records_with_the_input_first() {
     let (button, nose) = (Input::button(15), Input::nose(16));
     let until_record = |input: Input| (Step::UNTIL, input.byte(), 0);
+    let wait_record = (Step::WAIT, 0, Step::ENDLESS);
     let gait_index = |name: &str| paper().gait(name).expect(name).index() as u8;
     for (step, expected) in [
-        (
-            "wait button",
-            vec![until_record(button), (Step::WAIT, 0, Step::ENDLESS)],
-        ),
-        (
-            " wait  nose ",
-            vec![until_record(nose), (Step::WAIT, 0, Step::ENDLESS)],
-        ),
+        ("wait button", vec![until_record(button), wait_record]),
+        (" wait  nose ", vec![until_record(nose), wait_record]),
         (
             "walk until nose",
             vec![
@@ -101,34 +91,18 @@ fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
 #[test]
 fn every_free_pin_can_be_an_input_and_a_used_pin_is_refused_with_its_owner() {
     let rail = "[supply.rail]\npin = \"A3\"\nratio = 2.0\n";
+    let unusable =
+        "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)";
     for (pin, message) in [
         ("D9", ", which servo.A1 already has"),
         ("D3", ", which servo.A4 already has"),
         ("A3", ", which supply.rail already has"),
-        (
-            "D0",
-            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
-        ),
-        (
-            "D1",
-            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
-        ),
-        (
-            "D13",
-            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
-        ),
-        (
-            "A6",
-            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
-        ),
-        (
-            "A7",
-            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
-        ),
-        (
-            "a1",
-            "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)",
-        ),
+        ("D0", unusable),
+        ("D1", unusable),
+        ("D13", unusable),
+        ("A6", unusable),
+        ("A7", unusable),
+        ("a1", unusable),
     ] {
         for name in ["button", "nose"] {
             let actual = refusal_of(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));

@@ -56,3 +56,8 @@ fn paper_with(old: &str, new: &str) -> Result<Robot, Error> {
     assert!(text.contains(old), "robots/paper.toml has no {old:?}");
     Robot::parse(&text.replacen(old, new, 1))
 }
+
+/// Reads the paper's robot with further tables at the end of its text.
+fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
+    Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
+}

@@ -2,14 +2,11 @@
 //! of a round.
 
 use lizard_core::numbers::gaits::Step;
-use lizard_robot::{Error, Robot, Round};
+use lizard_robot::Round;
 
-use super::{paper, paper_text};
+use super::{gait, paper, paper_text, paper_with_tables};
 
 /// Reads the paper's robot with additional tables.
-fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
-    Robot::parse(&format!("{}\n\n{tables}", paper_text().trim_end()))
-}
 
 /// Returns the error message for a routine `patrol` with these lines.
 fn refusal_of(lines: &str) -> String {
@@ -55,19 +52,13 @@ fn names_of_two_words_and_times_with_decimals_are_read() {
     let text = r#"[routine.about-face]
 steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "stand 999 s"]"#;
     let robot = paper_with_tables(text).expect("the routine is valid");
-    let arc_index = robot
-        .gait("arc-left")
-        .expect("the file defines the gait")
-        .index() as u8;
-    let steps: Vec<_> = robot
-        .routine("about face")
+    let arc_index = gait(&robot, "arc-left").index() as u8;
+    let routine = robot.routine("about face");
+    let steps = routine
         .expect("the file defines the routine")
-        .step_records()
-        .to_vec();
-    let step_fields: Vec<_> = steps
-        .iter()
-        .map(|step| (step.kind, step.gait, step.count))
-        .collect();
+        .step_records();
+    let fields_of = |step: &Step| (step.kind, step.gait, step.count);
+    let step_fields: Vec<_> = steps.iter().map(fields_of).collect();
     let expected = [
         (Step::CYCLES, arc_index, 2),
         (Step::FRAMES, arc_index, 125),
@@ -121,52 +112,35 @@ fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() 
 
 #[test]
 fn a_mistake_is_reported_with_its_line_and_its_step() {
-    for (lines, message) in [
+    let no_length = "must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"";
+    let no_time = "has a time that is not within 0.02 to 999 s";
+    for (step, problem) in [
         (
-            "steps = [\"walk 1\", \"wolk 4\"]",
-            "step 2, \"wolk 4\", names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
+            "wolk 4",
+            "names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
         ),
+        ("patrol 1", "is the routine itself, which would never end"),
+        ("round 1", "is a routine; a step is a gait"),
+        ("walk", no_length),
+        ("walk 0", no_length),
+        ("walk 1000", no_length),
+        ("walk 1.5", no_length),
+        ("walk 0 s", no_time),
+        ("rest nan s", no_time),
         (
-            "steps = [\"patrol 1\"]",
-            "step 1, \"patrol 1\", is the routine itself, which would never end",
-        ),
-        (
-            "steps = [\"round 1\"]\n[routine.round]\nsteps = [\"patrol 1\"]",
-            "step 1, \"round 1\", is a routine; a step is a gait",
-        ),
-        (
-            "steps = [\"walk\"]",
-            "step 1, \"walk\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
-        ),
-        (
-            "steps = [\"walk 0\"]",
-            "step 1, \"walk 0\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
-        ),
-        (
-            "steps = [\"walk 1000\"]",
-            "step 1, \"walk 1000\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
-        ),
-        (
-            "steps = [\"walk 1.5\"]",
-            "step 1, \"walk 1.5\", must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
-        ),
-        (
-            "steps = [\"walk 0 s\"]",
-            "step 1, \"walk 0 s\", has a time that is not within 0.02 to 999 s",
-        ),
-        (
-            "steps = [\"rest nan s\"]",
-            "step 1, \"rest nan s\", has a time that is not within 0.02 to 999 s",
-        ),
-        (
-            "steps = [\"\"]",
-            "step 1, \"\", names the gait \"\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
+            "",
+            "names the gait \"\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
         // The paper's file is followed by a blank line, the header of the routine's table, and then its first key.
         let line = paper_text().lines().count() + 3;
-        let expected = format!("robot.toml:{line}: routine.patrol.steps: {message}");
-        assert_eq!(refusal_of(lines), expected);
+        let location = format!("robot.toml:{line}: routine.patrol.steps:");
+        let round = "[routine.round]\nsteps = [\"patrol 1\"]";
+        for (number, earlier_steps) in [(1, ""), (2, "\"walk 1\", ")] {
+            let lines = format!("steps = [{earlier_steps}\"{step}\"]\n{round}");
+            let expected = format!("{location} step {number}, \"{step}\", {problem}");
+            assert_eq!(refusal_of(&lines), expected);
+        }
     }
     for (lines, message) in [
         (
@@ -258,25 +232,18 @@ fn a_round_takes_as_long_and_goes_as_far_as_its_gaits_and_the_changes_between_th
         .collect::<Vec<_>>()
         .try_into()
         .expect("there are three routines");
-    let walk_forward = robot
-        .predict(robot.gait("walk").expect("the file defines the gait"))
-        .forward
-        .expect("the movement is decided");
-    let left_turn = robot
-        .predict(robot.gait("left").expect("the file defines the gait"))
-        .turn
-        .expect("the movement is decided");
+    let walk_forward = robot.predict(gait(&robot, "walk")).forward;
+    let walk_forward = walk_forward.expect("the movement is decided");
+    let left_turn = robot.predict(gait(&robot, "left")).turn;
+    let left_turn = left_turn.expect("the movement is decided");
     // Ten cycles of one second each, and the changes from and to the neutral pose.
     assert!(
         (10.0..11.0).contains(&ahead_round.seconds),
         "{}",
         ahead_round.seconds
     );
-    let share = ahead_round
-        .movement
-        .forward
-        .expect("the movement is decided")
-        / (10.0 * walk_forward);
+    let forward = ahead_round.movement.forward;
+    let share = forward.expect("the movement is decided") / (10.0 * walk_forward);
     assert!((0.95..1.05).contains(&share), "{share}");
     assert!(
         (7.0..8.0).contains(&about_round.seconds),

@@ -30,17 +30,13 @@ fn a_gait_reversed_twice_runs_forward() {
         .map(is_reversed),
         [false, true, false, false, true, true]
     );
-    let stroll_on = robot
-        .gait("stroll-on")
-        .expect("the robot has the gait stroll-on");
-    assert_eq!((stroll_on.phase_at(0.32), stroll_on.period()), (0.25, 1.28));
-    let stroll_back = robot
-        .gait("stroll-back")
-        .expect("the robot has the gait stroll-back");
-    assert_eq!(
-        (stroll_back.phase_at(0.3), stroll_back.period()),
-        (0.75, 1.2)
-    );
+    for (name, seconds, phase, period) in [
+        ("stroll-on", 0.32, 0.25, 1.28),
+        ("stroll-back", 0.3, 0.75, 1.2),
+    ] {
+        let gait = robot.gait(name).expect(name);
+        assert_eq!((gait.phase_at(seconds), gait.period()), (phase, period));
+    }
 }
 
 #[test]
@@ -52,18 +48,22 @@ fn a_mirrored_gait_exchanges_left_and_right_before_its_gains_apply() {
             .each_ref()
             .map(|stride| (stride.amplitude, stride.start))
     };
-    assert_eq!(
-        amplitudes_and_starts("stroll"),
-        [(16.0, 0.0), (16.0, 0.5), (16.0, 0.25), (16.0, 0.75)]
-    );
-    assert_eq!(
-        amplitudes_and_starts("veer-left"),
-        [(8.0, 0.0), (16.0, 0.5), (16.0, 0.25), (8.0, 0.75)]
-    );
-    assert_eq!(
-        amplitudes_and_starts("veer-right"),
-        [(16.0, 0.5), (8.0, 0.0), (8.0, 0.75), (16.0, 0.25)]
-    );
+    for (name, expected) in [
+        (
+            "stroll",
+            [(16.0, 0.0), (16.0, 0.5), (16.0, 0.25), (16.0, 0.75)],
+        ),
+        (
+            "veer-left",
+            [(8.0, 0.0), (16.0, 0.5), (16.0, 0.25), (8.0, 0.75)],
+        ),
+        (
+            "veer-right",
+            [(16.0, 0.5), (8.0, 0.0), (8.0, 0.75), (16.0, 0.25)],
+        ),
+    ] {
+        assert_eq!(amplitudes_and_starts(name), expected, "{name}");
+    }
     assert_eq!(
         amplitudes_and_starts("veer-left-back"),
         [(8.0, 0.0), (19.2, 0.5), (16.0, 0.25), (8.0, 0.75)]
@@ -173,16 +173,9 @@ fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
     };
     let robot_with_80 = paper_with_gaits(&text_of_gaits(80)).expect("80 gaits fit");
     assert_eq!(robot_with_80.gaits().len(), 80);
-    assert_eq!(
-        robot_with_80.gait("walk79").map(|gait| gait.index()),
-        Some(79)
-    );
-    assert_eq!(
-        robot_with_80
-            .gait("walk79")
-            .map(|gait| gait.table_sweeps(99)),
-        robot_with_80.gait("walk").map(|gait| gait.table_sweeps(99))
-    );
+    let [walk, walk79] = ["walk", "walk79"].map(|name| robot_with_80.gait(name).expect(name));
+    assert_eq!(walk79.index(), 79);
+    assert_eq!(walk79.table_sweeps(99), walk.table_sweeps(99));
     // More gaits leave no room for the maps of cells but are accepted until the section is full.
     for count in 80..255 {
         match paper_with_gaits(&text_of_gaits(count)) {

@@ -130,10 +130,9 @@ impl Condition for EndConditions {
             && [left, right].iter().all(|span| {
                 self.min_leg_sine(span) - MAX_DIRECTION_ERROR >= self.leg_limit + ROUNDING_ALLOWANCE
             });
-        if is_proven {
-            Verdict::Proven
-        } else {
-            Verdict::Undecided
+        match is_proven {
+            true => Verdict::Proven,
+            false => Verdict::Undecided,
         }
     }
 }
@@ -145,6 +144,13 @@ mod tests {
 
     /// Makes conditions whose limits every pose meets, for the head of a robot without symmetry, and a cell of a single
     /// pose, the neutral one.
+    fn span_of_one(angle: f64) -> Span {
+        Span {
+            low: angle,
+            high: angle,
+        }
+    }
+
     fn neutral_cell() -> (EndConditions, Cell) {
         let robot = robot("unequal");
         let numbers = robot.content();
@@ -154,14 +160,8 @@ mod tests {
             leg_limit: 0.0,
             ..EndConditions::new(robot.lizard(), numbers, End::Head)
         };
-        let span_of = |servo: usize| {
-            let angle = f64::from(numbers.neutral_angles[servo].0);
-            Span {
-                low: angle,
-                high: angle,
-            }
-        };
-        (conditions, Cell([span_of(0), span_of(1)]))
+        let span_of = |servo: usize| span_of_one(f64::from(numbers.neutral_angles[servo].0));
+        (conditions, Cell([0, 1].map(span_of)))
     }
 
     /// A function that selects one of the limits.
@@ -220,13 +220,7 @@ mod tests {
     fn crank_tips_that_may_be_crossed_leave_a_cell_undecided() {
         let (conditions, _) = neutral_cell();
         let mm_per_step = f64::from(conditions.rounded_bars.scale.bits).exp2().recip();
-        let span_at = |degrees: f64| {
-            let angle = degrees * 65536.0 / 360.0;
-            Span {
-                low: angle,
-                high: angle,
-            }
-        };
+        let span_at = |degrees: f64| span_of_one(degrees * 65536.0 / 360.0);
         // The right crank leans far to the left, so that one tip passes well above the other and the linkage closes.
         let right = span_at(165.0);
         let gap_at = |left: Span| {
