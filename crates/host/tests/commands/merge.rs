@@ -4,10 +4,6 @@
 
 use crate::program::{run_line, with_paper};
 
-fn refusal_of(arguments: &str, input: &str) -> String {
-    run_line(arguments, input).expect_refusal()
-}
-
 /// Computes all parts and returns their output, the last part first.
 fn compute_parts(arguments: &str, part_count: usize) -> String {
     let output_of_part = |number| {
@@ -39,39 +35,31 @@ fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
     let arguments = with_paper("design --search --step 0.1");
     let parts = compute_parts(&arguments, 2);
     let (last_part, first_part) = parts.split_once('\n').expect("the parts are two lines");
+    let merge_with_last_part =
+        |other_part: &str| run_line("merge", format!("{last_part}\n{other_part}"));
     assert_eq!(
-        refusal_of("merge", last_part),
+        merge_with_last_part("").expect_refusal(),
         "lizard: part 1/2 is missing"
     );
     let other_robot = "design --search --step 0.1 --robot robots/unequal.toml --part 1/2";
     let other_robot = run_line(other_robot, "").expect_success();
     assert_eq!(
-        refusal_of("merge", &format!("{last_part}\n{other_robot}")),
+        merge_with_last_part(&other_robot).expect_refusal(),
         "lizard: part 1/2 has a different robot from another part"
     );
     let other_step =
         run_line(&with_paper("design --search --step 0.2 --part 1/2"), "").expect_success();
-    assert!(
-        refusal_of("merge", &format!("{last_part}\n{other_step}")).contains("different options")
-    );
+    merge_with_last_part(&other_step).expect_refusal_with("different options");
     // A job that was killed leaves half a line.
     let half_line = &first_part[..first_part.len() / 2];
-    let message = refusal_of("merge", &format!("{last_part}\n{half_line}"));
-    assert!(
-        message.starts_with("lizard: standard input: line 2 is not a part: "),
-        "{message}"
-    );
-    assert!(refusal_of("merge", "").contains("there are no parts"));
-    assert!(refusal_of("merge no-such-part", "").contains("cannot read no-such-part: "));
+    merge_with_last_part(half_line)
+        .expect_refusal_with("lizard: standard input: line 2 is not a part: ");
+    run_line("merge", "").expect_refusal_with("there are no parts");
+    run_line("merge no-such-part", "").expect_refusal_with("cannot read no-such-part: ");
 }
 
 #[test]
 fn a_part_needs_a_valid_number_and_a_command_that_can_be_split() {
-    let message = refusal_of("prove --part 3/2", "");
-    assert!(
-        message.contains("it must be as 2/8, from 1/8 to 8/8"),
-        "{message}"
-    );
-    let message = refusal_of(&with_paper("design --part 1/2"), "");
-    assert!(message.contains("--part goes with --search"), "{message}");
+    run_line("prove --part 3/2", "").expect_refusal_with("it must be as 2/8, from 1/8 to 8/8");
+    run_line(&with_paper("design --part 1/2"), "").expect_refusal_with("--part goes with --search");
 }

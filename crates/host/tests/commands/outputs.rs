@@ -30,13 +30,10 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         fs::write(folder_path.join(name), text).expect("the file is written");
     }
     fs::create_dir(folder_path.join("charts")).expect("the folder is created");
-    fs::hard_link(
-        folder_path.join("my.toml"),
-        folder_path.join("charts/top-view.svg"),
-    )
-    .expect("a hard link is created");
-    fs::hard_link(folder_path.join("my.toml"), folder_path.join("my.urdf"))
-        .expect("a hard link is created");
+    for link in ["charts/top-view.svg", "my.urdf"] {
+        fs::hard_link(folder_path.join("my.toml"), folder_path.join(link))
+            .expect("a hard link is created");
+    }
     for (line, protected_file) in [
         ("flash image --robot my.toml --output my.toml", "my.toml"),
         (
@@ -57,12 +54,9 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         ("draw charts charts --robot my.toml", "top-view.svg"),
     ] {
         fs::create_dir_all(folder_path.join("x")).expect("the folder is created");
-        let Outcome {
-            code,
-            stderr: error,
-            ..
-        } = run_line_in(folder_path, line);
-        assert_eq!(code, Some(2), "{line}: {error}");
+        let outcome = run_line_in(folder_path, line);
+        let error = outcome.stderr;
+        assert_eq!(outcome.code, Some(2), "{line}: {error}");
         assert!(
             error.contains(protected_file) && error.contains("; name another file for the output"),
             "{line}: {error}"
@@ -120,7 +114,6 @@ fn a_command_that_is_killed_while_it_writes_leaves_no_file() {
         .current_dir(folder.path());
     let output = LIMIT.output(&mut bash, b"").expect("bash runs");
     assert_eq!(output.status.code(), None, "no signal: {output:?}");
-    let entries = fs::read_dir(folder.path()).expect("the folder is readable");
-    let remaining_files: Vec<_> = entries.collect();
-    assert!(remaining_files.is_empty(), "{remaining_files:?}");
+    let remaining_files = fs::read_dir(folder.path()).expect("the folder is readable");
+    assert_eq!(remaining_files.count(), 0);
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::program::{Outcome, read_file, robot_path, run, scratch_folder};
+use crate::program::{Outcome, assert_contains, read_file, robot_path, run, scratch_folder};
 
 fn make_parts(folder: &Path, arguments: &[&str]) -> Outcome {
     let folder = folder.display().to_string();
@@ -48,11 +48,8 @@ fn a_folder_holds_everything_to_build_the_robot() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
-    assert!(guide.contains("## 9. Struts\n"), "{guide}");
-    assert!(
-        guide.contains("Instead of the struts, 4 x strut,"),
-        "{guide}"
-    );
+    assert_contains(&guide, "## 9. Struts\n");
+    assert_contains(&guide, "Instead of the struts, 4 x strut,");
     assert!(
         !guide.contains("hook of the spring") && !guide.contains("tension"),
         "{guide}"
@@ -67,16 +64,11 @@ fn a_folder_holds_everything_to_build_the_robot() {
 #[test]
 fn one_corner_can_be_printed_first() {
     let folder = unused_path("parts-corner");
-    let list = make_parts(
-        &folder,
-        &["--robot", &robot_path("paper"), "--corner", "--json"],
-    )
-    .expect_json();
+    let options = ["--robot", &robot_path("paper"), "--corner", "--json"];
+    let list = make_parts(&folder, &options).expect_json();
     let list = list.as_array().expect("the value is an array");
-    let names: Vec<_> = list
-        .iter()
-        .filter_map(|part| part["part"].as_str())
-        .collect();
+    let names = list.iter().filter_map(|part| part["part"].as_str());
+    let names: Vec<_> = names.collect();
     for part in [
         "seat A1",
         "link A1 A3",
@@ -87,10 +79,8 @@ fn one_corner_can_be_printed_first() {
     ] {
         assert!(names.contains(&part), "{names:?}");
     }
-    assert!(
-        names.iter().any(|name| name.ends_with("strut")),
-        "{names:?}"
-    );
+    let has_strut = names.iter().any(|name| name.ends_with("strut"));
+    assert!(has_strut, "{names:?}");
     assert!(list.iter().all(|part| part["count"] == 1), "{list:?}");
     assert!(!names.contains(&"plate") && !folder.join("bill.json").exists());
     assert!(folder.join("stl/seat-A1.stl").is_file());
@@ -127,15 +117,15 @@ fn struts_may_have_springs() {
         assert!(folder.join(file).is_file(), "{file}");
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
-    assert!(guide.contains("## 9. Struts and springs"), "{guide}");
     for phrase in [
+        "## 9. Struts and springs",
         "Instead of the struts, 4 x rigid strut,",
         "hook",
         "tension",
         "pulls 4.0 N (0.40 N/mm)",
         "[leg.drive]\nkind = \"strut\"\nforce = 4.00\nrate = 0.400\n",
     ] {
-        assert!(guide.contains(phrase), "{phrase}: {guide}");
+        assert_contains(&guide, phrase);
     }
 }
 

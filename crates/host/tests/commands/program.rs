@@ -26,12 +26,41 @@ impl Outcome {
         serde_json::from_str(&self.expect_success()).expect("the output is JSON")
     }
 
+    /// Checks that the run succeeded, and parses each line of its standard output as a JSON value.
+    pub fn expect_json_lines(self) -> Vec<serde_json::Value> {
+        let output = self.expect_success();
+        let values = output.lines().map(serde_json::from_str);
+        values
+            .collect::<Result<_, _>>()
+            .expect("the output is JSON")
+    }
+
     /// Checks that the run refused its input and wrote nothing to standard output, and returns its message.
     pub fn expect_refusal(self) -> String {
         assert_eq!(self.code, Some(2), "{}", self.stderr);
         assert_eq!(self.stdout, "", "output before the refusal");
         self.stderr.trim().to_owned()
     }
+
+    /// Checks that the run refused its input with a message that contains `expected`.
+    #[track_caller]
+    pub fn expect_refusal_with(self, expected: &str) {
+        assert_contains(&self.expect_refusal(), expected);
+    }
+}
+
+/// Checks that a text contains another.
+#[track_caller]
+pub fn assert_contains(text: &str, expected: &str) {
+    assert!(text.contains(expected), "no {expected:?} in: {text}");
+}
+
+/// Creates an empty folder of this name in the scratch folder.
+pub fn new_folder(name: &str) -> PathBuf {
+    let folder = scratch_folder().join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("the folder is created");
+    folder
 }
 
 /// The root of the repository.
@@ -103,6 +132,12 @@ pub fn run_line(line: &str, input: impl AsRef<[u8]>) -> Outcome {
 /// Runs the program in the scratch folder without standard input.
 pub fn run(arguments: &[&str]) -> Outcome {
     run_in(scratch_folder(), arguments, "")
+}
+
+/// Runs the program, which must refuse its input, in the scratch folder; returns its message.
+#[track_caller]
+pub fn refusal_of(arguments: &[&str]) -> String {
+    run(arguments).expect_refusal()
 }
 
 /// Runs the program in a folder with this standard input.

@@ -5,32 +5,6 @@ use lizard_robot::Robot;
 
 use crate::program::read_file;
 
-/// The paper's robot on a 5 V supply, with an EEPROM that was never written.
-struct Board {
-    running: RunningRobot,
-}
-
-impl Board {
-    fn new() -> Self {
-        let robot = Robot::parse(&read_file("robots/paper.toml")).expect("the robot file is valid");
-        Self {
-            running: RunningRobot::power_on(*robot.firmware()),
-        }
-    }
-
-    /// Runs the board for a number of frames and returns the lines that it prints.
-    fn run(&mut self, frames: u32) -> Vec<String> {
-        self.running.run_frames(frames)
-    }
-
-    /// Sends a line and returns the lines that the board prints in the next 100 frames; by then all motion has ended.
-    fn send(&mut self, line: &str) -> Vec<String> {
-        let mut answer = self.running.send(format!("{line}\r").as_bytes());
-        answer.extend(self.run(100));
-        answer
-    }
-}
-
 /// True if a line is as the page shows it; `...` at the end of a page's line stands for any text.
 fn matches_page(line: &str, page_line: &str) -> bool {
     page_line
@@ -41,8 +15,10 @@ fn matches_page(line: &str, page_line: &str) -> bool {
 #[test]
 fn every_line_of_the_quickstart_is_answered_as_the_page_shows() {
     let page = read_file("docs/quickstart.md");
-    let mut board = Board::new();
-    let greeting = board.run(50);
+    // The paper's robot on a 5 V supply, with an EEPROM that was never written.
+    let robot = Robot::parse(&read_file("robots/paper.toml")).expect("the robot file is valid");
+    let mut board = RunningRobot::power_on(*robot.firmware());
+    let greeting = board.run_frames(50);
     // The first line is the banner, which the page shortens.
     assert!(greeting.len() > 1, "{greeting:?}");
     for line in &greeting[1..] {
@@ -55,12 +31,12 @@ fn every_line_of_the_quickstart_is_answered_as_the_page_shows() {
             let mut page_lines = exchange.lines();
             let line = page_lines.next().expect("a line follows the prompt");
             let page_lines: Vec<&str> = page_lines.collect();
-            let answer = board.send(line);
+            let mut answer = board.send(format!("{line}\r").as_bytes());
+            // After 100 frames all motion has ended.
+            answer.extend(board.run_frames(100));
+            let mut line_pairs = answer.iter().zip(&page_lines);
             let is_as_shown = answer.len() == page_lines.len()
-                && answer
-                    .iter()
-                    .zip(&page_lines)
-                    .all(|(answer, page_line)| matches_page(answer, page_line));
+                && line_pairs.all(|(answer, page_line)| matches_page(answer, page_line));
             assert!(
                 is_as_shown,
                 "{line}\n  is answered by {answer:#?}\n  but shown as {page_lines:#?}"
@@ -93,17 +69,15 @@ fn every_message_in_the_troubleshooting_table_is_printed_by_the_firmware() {
             } else {
                 continue;
             };
-            for phrase in answer
-                .split("...")
-                .map(|phrase| phrase.trim_matches([' ', ',']))
-            {
+            for phrase in answer.split("...") {
+                let phrase = phrase.trim_matches([' ', ',']);
                 assert!(messages.contains(phrase), "nothing prints {phrase:?}");
             }
         }
     }
     assert!(row_count > 17, "{row_count}");
-    assert_eq!(
-        codes,
-        [false, true, true, true, true, true, true, true, true, true]
+    assert!(
+        !codes[0] && codes[1..].iter().all(|is_listed| *is_listed),
+        "{codes:?}"
     );
 }

@@ -1,16 +1,11 @@
 //! Tests of `lizard sim` and `lizard draw`: invalid input, inputs of a routine, and the picture in docs/.
 
-use crate::program::{read_file, robot_path, run, scratch_folder};
-
-fn refusal_of(arguments: &[&str]) -> String {
-    run(arguments).expect_refusal()
-}
+use crate::program::{read_file, refusal_of, robot_path, run, scratch_folder};
 
 #[test]
 fn a_missing_firmware_is_named() {
-    let message = refusal_of(&["sim", "--elf", "no/such.elf"]);
     assert_eq!(
-        message,
+        refusal_of(&["sim", "--elf", "no/such.elf"]),
         "lizard: there is no firmware at no/such.elf; without --elf, the one inside this program \
          is used"
     );
@@ -19,13 +14,9 @@ fn a_missing_firmware_is_named() {
 #[test]
 fn a_file_that_is_not_firmware_is_refused() {
     let program_path = env!("CARGO_BIN_EXE_lizard");
-    let message = refusal_of(&["sim", "--elf", program_path]);
-    assert!(
-        message.starts_with(&format!(
-            "lizard: {program_path}: not an ELF file of an AVR"
-        )),
-        "{message}"
-    );
+    run(&["sim", "--elf", program_path]).expect_refusal_with(&format!(
+        "lizard: {program_path}: not an ELF file of an AVR"
+    ));
 }
 
 #[test]
@@ -44,20 +35,16 @@ fn the_refusal_of_an_invalid_script_names_file_and_line() {
 
 #[test]
 fn a_script_that_never_ends_is_refused() {
-    let message = refusal_of(&["sim", "--script", "/dev/zero"]);
     assert_eq!(
-        message,
+        refusal_of(&["sim", "--script", "/dev/zero"]),
         "lizard: cannot read /dev/zero: it is longer than 256 MiB"
     );
 }
 
 #[test]
 fn the_refusal_of_an_unknown_gait_lists_the_gaits_of_the_robot() {
-    let message = refusal_of(&["sim", "--robot", &robot_path("paper"), "--gait", "gallop"]);
-    assert!(
-        message.contains("no gait `gallop`; it has stand, walk, trot"),
-        "{message}"
-    );
+    run(&["sim", "--robot", &robot_path("paper"), "--gait", "gallop"])
+        .expect_refusal_with("no gait `gallop`; it has stand, walk, trot");
 }
 
 #[test]
@@ -65,30 +52,18 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
     let [patrol_path, script, svg] = ["patrol.toml", "patrol.txt", "patrol.svg"]
         .map(|name| scratch_folder().join(name).display().to_string());
     let gaits = read_file("docs/gaits.md");
-    let patrol = gaits
-        .split("```toml\n")
-        .find(|block| block.starts_with("[input.button]"));
-    let patrol = patrol
-        .and_then(|block| block.split("```").next())
-        .expect("the page has a patrol");
+    let mut blocks = gaits.split("```toml\n");
+    let patrol = blocks.find(|block| block.starts_with("[input.button]"));
+    let patrol = patrol.and_then(|block| block.split("```").next());
+    let patrol = patrol.expect("the page has a patrol");
     let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
     std::fs::write(&patrol_path, text).expect("the robot is written");
     std::fs::write(&script, "1000 patrol\n").expect("the script is written");
-    let arguments = [
-        "sim",
-        "--json",
-        "--robot",
-        &patrol_path,
-        "--script",
-        &script,
-        "--svg",
-        &svg,
-        "--duration=5",
-    ];
     let simulate = |presses: &[&str]| {
-        let mut all_arguments = arguments.to_vec();
-        all_arguments.extend(presses.iter().flat_map(|press| ["--press", press]));
-        run(&all_arguments).expect_json()
+        let mut arguments = vec!["sim", "--json", "--duration=5", "--svg", &svg];
+        arguments.extend(["--robot", &patrol_path, "--script", &script]);
+        arguments.extend(presses.iter().flat_map(|press| ["--press", press]));
+        run(&arguments).expect_json()
     };
     let wait_times_ms_of = |report: &serde_json::Value, input: &str| -> Vec<f64> {
         let lines = report["dialogue"].as_array().expect("there are lines");
@@ -110,13 +85,9 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
         pressed_report["servos"]
     );
     let report_without_presses = simulate(&[]);
-    assert_eq!(
-        (
-            wait_times_ms_of(&report_without_presses, "button").len(),
-            wait_times_ms_of(&report_without_presses, "nose").len()
-        ),
-        (1, 0)
-    );
+    let wait_counts =
+        ["button", "nose"].map(|input| wait_times_ms_of(&report_without_presses, input).len());
+    assert_eq!(wait_counts, [1, 0]);
     let message = refusal_of(&["sim", "--robot", &robot_path("paper"), "--press", "nose@1"]);
     assert_eq!(
         message,
@@ -127,12 +98,9 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
 #[test]
 fn times_out_of_range_are_refused() {
     for duration in ["0", "-3", "nan", "1e9", "soon"] {
-        let argument = format!("--duration={duration}");
-        let message = refusal_of(&["sim", &argument]);
-        assert!(message.contains("--duration"), "{message}");
+        run(&["sim", &format!("--duration={duration}")]).expect_refusal_with("--duration");
     }
-    let message = refusal_of(&["sim", "--duration=2"]);
-    assert!(message.contains("at least 4 s"), "{message}");
+    run(&["sim", "--duration=2"]).expect_refusal_with("at least 4 s");
 }
 
 #[test]

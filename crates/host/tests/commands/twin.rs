@@ -6,10 +6,7 @@ use crate::program::{RobotFile, read_file, run_line, with_paper};
 
 /// Runs a command and returns the printed JSON object in which `key` is `name`.
 fn find_object(line: &str, key: &str, name: &str) -> Value {
-    let output = run_line(line, "").expect_success();
-    let mut objects = output
-        .lines()
-        .map(|line| serde_json::from_str::<Value>(line).expect("the output is JSON"));
+    let mut objects = run_line(line, "").expect_json_lines().into_iter();
     objects.find(|object| object[key] == name).expect(line)
 }
 
@@ -20,11 +17,8 @@ fn a_round_of_a_routine_moves_the_robot_as_lizard_gaits_predicts_for_the_same_se
     let robot = RobotFile::from_paper("routines", &[("[gait.stand]", ROUTINES)]);
     let run_twin = |routine: &str, servo: &str| {
         let line = format!("twin --json --gait {routine} --servo {servo}");
-        find_object(
-            &robot.add_option_to(&line),
-            "command",
-            &format!("{routine} 1"),
-        )
+        let command = format!("{routine} 1");
+        find_object(&robot.add_option_to(&line), "command", &command)
     };
     let tour = find_object(&robot.add_option_to("gaits --json"), "routine", "tour");
     let component_of = |path: &Value, name: &str| path[name].as_f64().expect(name);
@@ -67,11 +61,10 @@ fn the_firmware_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
         let friction_key = format!("friction = {friction}");
         let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
         let robot = RobotFile::from_file("robots/grain.toml", "grain", &changes);
-        let output = run_line(&robot.add_option_to("twin --json"), "").expect_success();
+        let rows = run_line(&robot.add_option_to("twin --json"), "").expect_json_lines();
         let figure_of = |gait: &str, pointer: &str| {
-            let mut lines = output.lines().flat_map(serde_json::from_str::<Value>);
-            let line = lines.find(|line| line["command"] == gait);
-            let figure = line.as_ref().and_then(|line| line.pointer(pointer));
+            let row = rows.iter().find(|row| row["command"] == gait);
+            let figure = row.and_then(|row| row.pointer(pointer));
             figure.and_then(Value::as_f64).expect(gait)
         };
         let run_speed = figure_of("run", "/cycle/speed");

@@ -5,14 +5,10 @@ use std::process::Command;
 
 use lizard_time_limit::LIMIT;
 
-use crate::program::{repo_root, robot_path, run, scratch_folder};
+use crate::program::{assert_contains, repo_root, robot_path, run, scratch_folder};
 
 fn output_of(arguments: &[&str]) -> String {
     run(arguments).expect_success()
-}
-
-fn refusal_of(arguments: &[&str]) -> String {
-    run(arguments).expect_refusal()
 }
 
 /// The first words of the lines under a heading of `lizard --help`.
@@ -77,18 +73,11 @@ fn a_command_of_the_previous_version_still_works_and_names_the_new_one() {
     ] {
         let [old, new] = [old, new].map(|line| run(&line.split(' ').collect::<Vec<_>>()));
         assert!(old.stdout == new.stdout, "{old:?}");
-        let note = old.stderr;
-        assert!(
-            note.contains("` now; the next version will not know"),
-            "{note}"
-        );
+        assert_contains(&old.stderr, "` now; the next version will not know");
         assert_eq!(new.stderr, "");
     }
-    let message = refusal_of(&["spring", "--wire", "0.6"]);
-    assert!(
-        message.contains("no command `spring` any more; a spring's force"),
-        "{message}"
-    );
+    run(&["spring", "--wire", "0.6"])
+        .expect_refusal_with("no command `spring` any more; a spring's force");
 }
 
 #[test]
@@ -106,7 +95,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
         &["draw", "--theta1", &long_word],
         &["calibrate", "restore", &long_word],
     ] {
-        let error = refusal_of(arguments);
+        let error = run(arguments).expect_refusal();
         assert!(error.contains("xxx [..."), "{error}");
         assert!(error.len() < 2500, "{} bytes: {error}", error.len());
     }
@@ -137,8 +126,7 @@ fn a_mistyped_word_is_answered_with_a_suggestion() {
             "; did you mean `arc-left`?",
         ),
     ] {
-        let error = refusal_of(arguments);
-        assert!(error.contains(expected), "{arguments:?}: {error}");
+        run(arguments).expect_refusal_with(expected);
     }
 }
 
@@ -167,32 +155,29 @@ fn bash_completions(script: &Path, typed_line: &str, index: usize) -> Vec<String
 fn bash_completes_commands_and_options() {
     let script = scratch_folder().join("lizard.bash");
     std::fs::write(&script, output_of(&["completions", "bash"])).expect("the file is written");
-    assert_eq!(bash_completions(&script, "lizard calib", 1), ["calibrate"]);
-    assert_eq!(
-        bash_completions(&script, "lizard twin --ro", 2),
-        ["--robust", "--robot"]
-    );
-    assert_eq!(
-        bash_completions(&script, "lizard sim --fidelity sto", 3),
-        ["stock"]
-    );
-    let robots = bash_completions(&script, "lizard gaits --robot la", 3);
-    assert_eq!(robots, ["large"]);
     let root = repo_root().display().to_string();
-    let files = bash_completions(&script, &format!("lizard gaits --robot {root}/rob"), 3);
-    assert_eq!(
-        files,
-        [format!("{root}/robot.toml"), format!("{root}/robots/")]
-    );
+    let files = [format!("{root}/robot.toml"), format!("{root}/robots/")];
+    for (line, index, offers) in [
+        ("lizard calib", 1, &["calibrate"][..]),
+        ("lizard twin --ro", 2, &["--robust", "--robot"]),
+        ("lizard sim --fidelity sto", 3, &["stock"]),
+        ("lizard gaits --robot la", 3, &["large"]),
+        (
+            &format!("lizard gaits --robot {root}/rob"),
+            3,
+            &files.each_ref().map(String::as_str),
+        ),
+        // No files are offered for a gait.
+        ("lizard sim --gait ", 3, &[""]),
+    ] {
+        assert_eq!(bash_completions(&script, line, index), offers, "{line}");
+    }
     for (shell, offer) in [
         ("zsh", ":_files -g \"*.toml\"' "),
         ("fish", " -r -k -xa \"(__fish_complete_suffix .toml) grain "),
     ] {
-        let text = output_of(&["completions", shell]);
-        assert!(text.contains(offer), "{shell}: {text}");
+        assert_contains(&output_of(&["completions", shell]), offer);
     }
-    let gaits = bash_completions(&script, "lizard sim --gait ", 3);
-    assert_eq!(gaits, [""], "no files");
 }
 
 #[test]
@@ -218,10 +203,8 @@ fn every_command_has_a_manual_page_that_names_its_options() {
         }
     }
     for subcommand in ["calibrate-backup", "flash-image", "sim-bench"] {
-        assert!(
-            pages.join(format!("lizard-{subcommand}.1")).is_file(),
-            "{subcommand}"
-        );
+        let page = pages.join(format!("lizard-{subcommand}.1"));
+        assert!(page.is_file(), "{subcommand}");
     }
     assert!(count > 13, "{count}");
     let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("the file is readable");
@@ -230,8 +213,7 @@ fn every_command_has_a_manual_page_that_names_its_options() {
 
 #[test]
 fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
-    let ports: serde_json::Value =
-        serde_json::from_str(&output_of(&["info", "ports", "--json"])).expect("the output is JSON");
+    let ports = run(&["info", "ports", "--json"]).expect_json();
     let ports = ports.as_array().expect("the value is an array");
     let text = output_of(&["info", "ports"]);
     assert_eq!(
@@ -244,7 +226,7 @@ fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
 
 #[test]
 fn bench_without_a_build_says_what_is_missing_and_how_to_get_it() {
-    let message = refusal_of(&["sim", "bench"]);
-    assert!(message.contains("`make firmware`"), "{message}");
-    assert!(message.contains("lizard sim bench --elf "), "{message}");
+    let message = run(&["sim", "bench"]).expect_refusal();
+    assert_contains(&message, "`make firmware`");
+    assert_contains(&message, "lizard sim bench --elf ");
 }

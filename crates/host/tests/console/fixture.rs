@@ -119,8 +119,9 @@ pub fn open_terminal() -> (File, OwnedFd, PathBuf) {
     (File::from(test_side), program_side.into(), path)
 }
 
-/// Opens a pseudo terminal, 100 columns wide; returns the test's side and the program's side.
-pub fn open_wide_terminal() -> (File, OwnedFd) {
+/// Starts a program in its own pseudo terminal, 100 columns wide; returns the test's side of the terminal and the
+/// program.
+pub fn spawn_in_terminal(mut command: Command) -> (File, Child) {
     let (test_side, program_side, _) = open_terminal();
     let size = Winsize {
         ws_row: 30,
@@ -129,7 +130,13 @@ pub fn open_wide_terminal() -> (File, OwnedFd) {
         ws_ypixel: 0,
     };
     tcsetwinsize(&program_side, size).expect("the size is set");
-    (test_side, program_side)
+    let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
+    let child = command
+        .stdin(copy_stdio())
+        .stdout(copy_stdio())
+        .stderr(copy_stdio())
+        .spawn();
+    (test_side, child.expect("the program starts"))
 }
 
 /// A program in its own pseudo terminal, 100 columns wide.
@@ -142,15 +149,8 @@ pub struct TerminalSession {
 }
 
 impl TerminalSession {
-    pub fn start(mut command: Command) -> Self {
-        let (test_side, program_side) = open_wide_terminal();
-        let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
-        let child = command
-            .stdin(copy_stdio())
-            .stdout(copy_stdio())
-            .stderr(copy_stdio())
-            .spawn()
-            .expect("the program starts");
+    pub fn start(command: Command) -> Self {
+        let (test_side, child) = spawn_in_terminal(command);
         let mut screen_reader = test_side.try_clone().expect("the clone succeeds");
         let (sender, receiver) = mpsc::channel();
         std::thread::spawn(move || {

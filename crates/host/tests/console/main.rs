@@ -11,8 +11,10 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 
 use lizard_time_limit::LIMIT;
+use rustix::process::{Pid, Signal, kill_process};
+use rustix::termios::{LocalModes, tcgetattr};
 
-use fixture::{Device, TerminalSession, Uno, lizard_command, moving_gait, open_wide_terminal, run};
+use fixture::{Device, TerminalSession, Uno, lizard_command, moving_gait, run, spawn_in_terminal};
 
 #[test]
 fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
@@ -50,13 +52,18 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
     let port = uno.port();
-    let (_, error, code) = run(folder_path, &["calibrate", "backup", "a.toml", &port], "");
-    assert_eq!(code, Some(0), "{error}");
-    let first_text = fs::read_to_string(folder_path.join("a.toml")).expect("the file is readable");
-
+    let backup_to = |file: &str| {
+        let (_, error, code) = run(folder_path, &["calibrate", "backup", file, &port], "");
+        assert_eq!(code, Some(0), "{error}");
+        fs::read_to_string(folder_path.join(file)).expect("the file is readable")
+    };
+    let restore = |file: &str, text: &str| {
+        fs::write(folder_path.join(file), text).expect("the file is written");
+        run(folder_path, &["calibrate", "restore", file, &port], "")
+    };
+    let first_text = backup_to("a.toml");
     let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
-    fs::write(folder_path.join("b.toml"), &changed_text).expect("the file is written");
-    let (out, error, code) = run(folder_path, &["calibrate", "restore", "b.toml", &port], "");
+    let (out, error, code) = restore("b.toml", &changed_text);
     assert_eq!(code, Some(0), "{error}");
     assert!(
         out.ends_with("has accepted and saved the calibration of b.toml\n"),
@@ -66,8 +73,7 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
     let scale_line = first_text.lines().find(|line| line.starts_with("scale = "));
     let refused_text =
         changed_text.replacen(scale_line.expect("A1 has a scale"), "scale = 99.0", 1);
-    fs::write(folder_path.join("c.toml"), refused_text).expect("the file is written");
-    let (out, error, code) = run(folder_path, &["calibrate", "restore", "c.toml", &port], "");
+    let (out, error, code) = restore("c.toml", &refused_text);
     assert_eq!(code, Some(1), "{error}");
     assert!(
         error.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
@@ -75,13 +81,8 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
     );
     assert_eq!(out, "");
 
-    let (_, error, code) = run(folder_path, &["calibrate", "backup", "d.toml", &port], "");
-    assert_eq!(code, Some(0), "{error}");
-    let last_text = fs::read_to_string(folder_path.join("d.toml")).expect("the file is readable");
-    assert_eq!(
-        last_text, changed_text,
-        "the saved calibration after a reset"
-    );
+    let saved_text = backup_to("d.toml");
+    assert_eq!(saved_text, changed_text, "the calibration after a reset");
 }
 
 #[test]
@@ -90,12 +91,9 @@ fn info_reports_the_firmware_and_the_settings_of_a_board_and_changes_nothing() {
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
     let port = uno.port();
-    let save_result = run(
-        folder_path,
-        &["console", &port],
-        "trim 3 -4.25\nboot rest\nsave\n",
-    );
-    assert_eq!(save_result.2, Some(0), "{}", save_result.1);
+    let lines = "trim 3 -4.25\nboot rest\nsave\n";
+    let (_, error, code) = run(folder_path, &["console", &port], lines);
+    assert_eq!(code, Some(0), "{error}");
     for _ in 0..2 {
         let (out, error, code) = run(folder_path, &["info", "--json", &port], "");
         assert_eq!(code, Some(0), "{error}");
@@ -145,16 +143,16 @@ fn calibrate_advances_a_step_per_key_and_leaves_a_cancelled_calibration_unchange
     let arguments = ["calibrate", "--sim"];
     let mut session = TerminalSession::start(lizard_command(folder.path(), &arguments));
     session.wait_for("before you begin");
-    session.press("\r");
-    session.wait_for("fit the horns");
-    session.press("\r");
-    session.wait_for("which way does A1");
-    session.press(" ");
-    session.wait_for("A1 has moved");
-    session.press("n");
-    session.wait_for("The sign of A1 is `");
-    session.press("q");
-    session.wait_for("cancelled: the robot keeps its old calibration");
+    for (key, expected) in [
+        ("\r", "fit the horns"),
+        ("\r", "which way does A1"),
+        (" ", "A1 has moved"),
+        ("n", "The sign of A1 is `"),
+        ("q", "cancelled: the robot keeps its old calibration"),
+    ] {
+        session.press(key);
+        session.wait_for(expected);
+    }
     assert_eq!(session.exit_code(), Some(0));
 }
 
@@ -180,21 +178,16 @@ fn a_recorded_session_is_drawn_and_summarized() {
     let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
     assert_eq!(status.code(), Some(1), "code for a refused line");
 
-    let (out, error, code) = run(
-        folder_path,
-        &["console", "replay", "a.jsonl", "--svg", "a.svg"],
-        "",
-    );
+    let arguments = ["console", "replay", "a.jsonl", "--svg", "a.svg"];
+    let (out, error, code) = run(folder_path, &arguments, "");
     assert_eq!(code, Some(0), "{error}");
-    assert!(
-        out.contains(" >  speed 50\n") || out.contains(" > speed 50\n"),
-        "{out}"
-    );
-    assert!(
-        out.contains("commands    2, of these refused: 1\n"),
-        "{out}"
-    );
-    assert!(out.contains("trouble     none\n"), "{out}");
+    for line in [
+        " > speed 50\n",
+        "commands    2, of these refused: 1\n",
+        "trouble     none\n",
+    ] {
+        assert!(out.contains(line), "{line}: {out}");
+    }
     let picture = fs::read_to_string(folder_path.join("a.svg")).expect("the file is readable");
     // If the machine pauses for a second, all four curves have a gap.
     let curves = picture.matches("<polyline").count();
@@ -203,11 +196,8 @@ fn a_recorded_session_is_drawn_and_summarized() {
         "{curves}: a curve for each servo"
     );
 
-    let (_, error, code) = run(
-        folder_path,
-        &["console", "--record", "a.jsonl", "--sim"],
-        "",
-    );
+    let arguments = ["console", "--record", "a.jsonl", "--sim"];
+    let (_, error, code) = run(folder_path, &arguments, "");
     assert_eq!(code, Some(2));
     assert!(error.contains("a.jsonl already exists"), "{error}");
 }
@@ -219,11 +209,8 @@ fn a_port_that_another_program_has_open_is_refused() {
     let mut other_session =
         TerminalSession::start(lizard_command(folder.path(), &["console", &uno.port()]));
     other_session.wait_for("# lizard ");
-    let (_, error, code) = run(
-        folder.path(),
-        &["calibrate", "backup", "a.toml", &uno.port()],
-        "",
-    );
+    let arguments = ["calibrate", "backup", "a.toml", &uno.port()];
+    let (_, error, code) = run(folder.path(), &arguments, "");
     let owner_text = format!("is open in lizard (process {})", other_session.child.id());
     other_session.press("\x03");
     assert_eq!(code, Some(1));
@@ -238,19 +225,14 @@ fn a_board_that_is_not_a_lizard_is_reported_with_its_output() {
         // Writing fails while no program has the port open.
         let _ = terminal.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
-    let (_, error, code) = run(
-        folder.path(),
-        &["calibrate", "backup", "a.toml", &device.port],
-        "",
-    );
+    let arguments = ["calibrate", "backup", "a.toml", &device.port];
+    let (_, error, code) = run(folder.path(), &arguments, "");
     device.stop();
     assert_eq!(code, Some(1), "{error}");
     let expected = "this is not a lizard: it says `Grbl 1.1h ['$' for help]`";
     assert!(error.contains(expected), "{error}");
-    assert!(
-        !folder.path().join("a.toml").exists(),
-        "no incomplete file may remain"
-    );
+    // No incomplete file remains.
+    assert!(!folder.path().join("a.toml").exists());
 }
 
 #[test]
@@ -280,11 +262,6 @@ fn invalid_input_is_refused_with_a_message() {
     let folder_path = folder.path();
     fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("the file is written");
     fs::write(folder_path.join("other.toml"), "[links]\nl0 = 20.0\n").expect("the file is written");
-    let refusal_of = |arguments: &[&str]| {
-        let (out, error, code) = run(folder_path, arguments, "");
-        assert_eq!(out, "");
-        (error.trim().to_owned(), code)
-    };
     for (arguments, expected) in [
         (
             &["console", "/dev/no-such-port"][..],
@@ -311,9 +288,9 @@ fn invalid_input_is_refused_with_a_message() {
             "lizard: calibrate asks for single keys; run it in a terminal",
         ),
     ] {
-        let (error, code) = refusal_of(arguments);
-        assert!(error.starts_with(expected), "{error}");
-        assert_eq!(code, Some(2), "{error}");
+        let (out, error, code) = run(folder_path, arguments, "");
+        assert!(error.trim().starts_with(expected), "{error}");
+        assert_eq!((out.as_str(), code), ("", Some(2)), "{error}");
     }
 }
 
@@ -342,8 +319,7 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_is_removed_with_the_
         .spawn()
         .expect("the program starts");
     LIMIT.expect("a port at the end of the link", || board_link.exists());
-    let id = rustix::process::Pid::from_child(&child);
-    rustix::process::kill_process(id, rustix::process::Signal::TERM).expect("the process exists");
+    send_signal(&child, Signal::TERM);
     let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
     let signal = std::os::unix::process::ExitStatusExt::signal(&status);
     assert_eq!(signal, Some(15), "not ended by SIGTERM");
@@ -359,6 +335,10 @@ fn a_picture_is_not_printed_to_a_terminal() {
     assert_eq!(session.exit_code(), Some(2));
 }
 
+fn send_signal(child: &Child, signal: Signal) {
+    kill_process(Pid::from_child(child), signal).expect("the process exists");
+}
+
 /// The state of a process, as `ps` prints it: S for asleep, R for running, T for stopped.
 fn process_state(child: &Child) -> char {
     let path = format!("/proc/{}/stat", child.id());
@@ -369,10 +349,10 @@ fn process_state(child: &Child) -> char {
 
 /// True if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
 fn is_cooked(terminal: &File) -> bool {
-    let modes = rustix::termios::tcgetattr(terminal)
-        .expect("the terminal has modes")
-        .local_modes;
-    modes.contains(rustix::termios::LocalModes::ICANON | rustix::termios::LocalModes::ECHO)
+    let modes = tcgetattr(terminal).expect("the terminal has modes");
+    modes
+        .local_modes
+        .contains(LocalModes::ICANON | LocalModes::ECHO)
 }
 
 #[test]
@@ -390,9 +370,7 @@ fn control_z_restores_the_terminal_and_fg_continues() {
         session.press("\x1a");
         LIMIT.expect("a stopped program", || process_state(&session.child) == 'T');
         assert!(is_cooked(&session.keys), "{command}");
-        let id = rustix::process::Pid::from_child(&session.child);
-        rustix::process::kill_process(id, rustix::process::Signal::CONT)
-            .expect("the process exists");
+        send_signal(&session.child, Signal::CONT);
         LIMIT.expect("keys one by one", || !is_cooked(&session.keys));
         session.press(keys);
         session.wait_for(next_text);
@@ -407,14 +385,8 @@ fn a_program_whose_terminal_is_closed_ends() {
     let uno = Uno::start(folder.path());
     let port = uno.port();
     for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
-        let (mut test_side, program_side) = open_wide_terminal();
-        let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
-        let mut child = lizard_command(folder.path(), &[command, &port])
-            .stdin(copy_stdio())
-            .stdout(copy_stdio())
-            .stderr(copy_stdio())
-            .spawn()
-            .expect("the program starts");
+        let (mut test_side, mut child) =
+            spawn_in_terminal(lizard_command(folder.path(), &[command, &port]));
         let printed_text = LIMIT.within(first_text, move || {
             let (mut text, mut bytes) = (String::new(), [0; 4096]);
             while !text.contains(first_text) {
@@ -450,11 +422,8 @@ fn a_simulated_robot_that_has_ended_is_not_reported_as_continuing() {
         session.read_output();
         session.new_text.contains("\x1b[?2004l")
     });
-    assert!(
-        !session.new_text.contains("goes on"),
-        "{:?}",
-        session.new_text
-    );
+    let text = &session.new_text;
+    assert!(!text.contains("goes on"), "{text:?}");
 }
 
 #[test]

@@ -1,54 +1,42 @@
 //! Tests of the drawing of the cranks and the spline.
 
 use lizard_host::draw::draw_horns;
-use lizard_robot::Robot;
 
-use super::drawing::{Drawing, Point};
-use super::files::{SERVOS, paper_toml, robot_files, servo_value};
-
-/// Draws the horns of a robot file.
-fn horns_of(robot_toml: &str) -> Drawing {
-    let robot = Robot::parse(robot_toml).expect("the robot file is valid");
-    Drawing::parse(&draw_horns(&robot))
-}
+use super::drawing::Point;
+use super::files::{SERVOS, drawing_of, neutral_angle, paper_toml, robot_files};
 
 #[test]
 fn a_crank_is_drawn_at_and_labelled_with_its_neutral_angle() {
     for (name, text) in robot_files() {
-        let drawing = horns_of(&text);
+        let drawing = drawing_of(draw_horns, &text);
         // All four cranks are drawn to the same scale.
         let link_length = |key: &str| -> f64 {
-            let line = text
+            let mut values = text
                 .lines()
-                .find(|line| line.starts_with(&format!("{key} ")));
-            let value = line
-                .and_then(|line| line.split(['=', '#']).nth(1))
-                .expect(key);
-            value.trim().parse().expect("the value is a number")
+                .filter_map(|line| line.strip_prefix(key)?.trim().strip_prefix('='));
+            let value = values.next().and_then(|value| value.split('#').next());
+            value
+                .expect(key)
+                .trim()
+                .parse()
+                .expect("the value is a number")
         };
+        let crank_of = |servo: &str| drawing.points_by_id(&format!("crank-{servo}"));
         let scales = SERVOS
             .iter()
             .zip(["l1", "l4", "l9", "l6"])
             .map(|(servo, key)| {
-                let crank = drawing.points_by_id(&format!("crank-{servo}"));
+                let crank = crank_of(servo);
                 (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / link_length(key)
             });
         let scales: Vec<f64> = scales.collect();
-        assert!(
-            scales
-                .iter()
-                .all(|scale| (scale / scales[0] - 1.0).abs() < 1e-3),
-            "{name}"
-        );
+        for scale in &scales {
+            assert!((scale / scales[0] - 1.0).abs() < 1e-3, "{name}: {scales:?}");
+        }
         for servo in SERVOS {
-            let neutral: f64 = servo_value(&text, servo, "neutral")
-                .parse()
-                .expect("the value is a number");
-            let crank = drawing.points_by_id(&format!("crank-{servo}"));
-            assert!(
-                turn_between(neutral, direction(&crank)).abs() < 0.02,
-                "{name} {servo}"
-            );
+            let neutral = neutral_angle(&text, servo);
+            let error = turn_between(neutral, direction(&crank_of(servo)));
+            assert!(error.abs() < 0.02, "{name} {servo}: {error}");
             let label = &drawing.element_by_id(&format!("angle-{servo}")).content;
             assert_eq!(*label, format!("{neutral:.2}°"), "{name} {servo}");
         }
@@ -71,15 +59,10 @@ fn turn_between(from: f64, to: f64) -> f64 {
 #[test]
 fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
     for (name, text) in robot_files() {
-        let drawing = horns_of(&text);
+        let drawing = drawing_of(draw_horns, &text);
         let [placed_crank, exact_crank] = ["sits", "should"].map(|id| drawing.points_by_id(id));
-        let neutral: f64 = servo_value(&text, "A1", "neutral")
-            .parse()
-            .expect("the value is a number");
-        assert!(
-            turn_between(neutral, direction(&exact_crank)).abs() < 0.02,
-            "{name}"
-        );
+        let error = turn_between(neutral_angle(&text, "A1"), direction(&exact_crank));
+        assert!(error.abs() < 0.02, "{name} {error}");
         let mut texts = drawing.texts();
         let trim = texts.find_map(|text| text.strip_prefix("trim 1 "));
         let trim = trim.expect("the drawing has a trim");
@@ -92,13 +75,11 @@ fn the_trim_of_the_example_turns_the_crank_to_its_neutral_angle() {
 
 #[test]
 fn the_spline_has_25_teeth_and_a_crank_is_off_by_half_a_tooth_at_most() {
-    let drawing = horns_of(&paper_toml());
+    let drawing = drawing_of(draw_horns, &paper_toml());
     let corners = drawing.points_by_id("spline");
     let count = corners.len() as f64;
-    let sum = corners
-        .iter()
-        .fold((0.0, 0.0), |sum, point| (sum.0 + point.0, sum.1 + point.1));
-    let middle = (sum.0 / count, sum.1 / count);
+    let mean_of = |axis: fn(&Point) -> f64| corners.iter().map(axis).sum::<f64>() / count;
+    let middle = (mean_of(|point| point.0), mean_of(|point| point.1));
     let radius_of = |point: &Point| (point.0 - middle.0).hypot(point.1 - middle.1);
     let mean_radius = corners.iter().map(radius_of).sum::<f64>() / count;
     let teeth = (0..corners.len()).filter(|index| {

@@ -43,16 +43,15 @@ impl Element {
                 let (width, height) = point_of("width", "height");
                 vec![(x, y), (x + width, y + height)]
             }
-            "polyline" | "polygon" => self
-                .attribute("points")
-                .split(' ')
-                .map(|pair| {
-                    let (x, y) = pair.split_once(',').expect("a point is written as x,y");
-                    [x, y]
-                        .map(|text| text.parse::<f64>().expect("a coordinate is a number"))
-                        .into()
-                })
-                .collect(),
+            "polyline" | "polygon" => {
+                let number_of = |text: &str| text.parse().expect("a coordinate is a number");
+                let pairs = self
+                    .attribute("points")
+                    .split(' ')
+                    .map(|pair| pair.split_once(','));
+                let pairs = pairs.map(|pair| pair.expect("a point is written as x,y"));
+                pairs.map(|(x, y)| (number_of(x), number_of(y))).collect()
+            }
             _ => vec![],
         }
     }
@@ -69,12 +68,12 @@ impl Drawing {
         for event in svg::read(svg).expect("the drawing is SVG") {
             match event {
                 Event::Tag(tag, kind, attributes) if kind != svg::node::element::tag::Type::End => {
+                    let attributes = attributes.iter();
+                    let attributes =
+                        attributes.map(|(key, value)| (key.clone(), value.to_string()));
                     elements.push(Element {
                         tag: tag.into(),
-                        attributes: attributes
-                            .iter()
-                            .map(|(key, value)| (key.clone(), value.to_string()))
-                            .collect(),
+                        attributes: attributes.collect(),
                         content: String::new(),
                     });
                 }
@@ -87,13 +86,14 @@ impl Drawing {
     }
 
     pub fn element_by_id(&self, id: &str) -> &Element {
-        let mut matches = self
+        let elements = self
             .elements
             .iter()
             .filter(|element| element.attribute("id") == id);
-        let element = matches.next().unwrap_or_else(|| panic!("no {id}"));
-        assert!(matches.next().is_none(), "the drawing has two {id}");
-        element
+        match elements.collect::<Vec<_>>()[..] {
+            [element] => element,
+            ref elements => panic!("the drawing has {} elements {id}", elements.len()),
+        }
     }
 
     pub fn has_element(&self, id: &str) -> bool {

@@ -1,6 +1,12 @@
 //! The files of robots/ as text, and values in them.
 
+use std::path::PathBuf;
+
+use lizard_robot::Robot;
+
 use crate::program::{read_file, repo_root};
+
+use super::drawing::Drawing;
 
 /// The servos, in the order of every array.
 pub const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
@@ -8,37 +14,42 @@ pub const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
 /// Every file of robots/: its name and its text.
 pub fn robot_files() -> Vec<(String, String)> {
     let folder = std::fs::read_dir(repo_root().join("robots")).expect("robots/ is readable");
-    let files: Vec<(String, String)> = folder
-        .map(|entry| entry.expect("robots/ is readable").path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
-        .map(|path| {
-            let text = std::fs::read_to_string(&path).expect("the file is readable");
-            (path.display().to_string(), text)
-        })
-        .collect();
+    let paths = folder.map(|entry| entry.expect("robots/ is readable").path());
+    let paths = paths.filter(|path| {
+        path.extension()
+            .is_some_and(|extension| extension == "toml")
+    });
+    let read = |path: PathBuf| {
+        let text = std::fs::read_to_string(&path).expect("the file is readable");
+        (path.display().to_string(), text)
+    };
+    let files: Vec<(String, String)> = paths.map(read).collect();
     assert!(files.len() >= 4);
     files
 }
 
 /// The text of a servo's value: that of the first line with this key after the header of the servo's table.
 pub fn servo_value<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
-    let (_, table) = text
-        .split_once(&format!("[servo.{servo}]"))
-        .expect("the file has the servo's table");
-    let line = table
+    let table = text.split_once(&format!("[servo.{servo}]"));
+    let (_, table) = table.expect("the file has the servo's table");
+    let mut values = table
         .lines()
-        .find(|line| line.starts_with(&format!("{key} =")))
-        .expect(key);
-    line.split_once('=')
-        .expect("the line has a value")
-        .1
-        .trim()
-        .trim_matches('"')
+        .filter_map(|line| line.strip_prefix(key)?.trim().strip_prefix('='));
+    values.next().expect(key).trim().trim_matches('"')
+}
+
+/// A servo's neutral angle, deg.
+pub fn neutral_angle(text: &str, servo: &str) -> f64 {
+    let value = servo_value(text, servo, "neutral");
+    value.parse().expect("the value is a number")
 }
 
 pub fn paper_toml() -> String {
     read_file("robots/paper.toml")
+}
+
+/// Draws the robot of a robot file.
+pub fn drawing_of(draw: fn(&Robot) -> String, robot_toml: &str) -> Drawing {
+    let robot = Robot::parse(robot_toml).expect("the robot file is valid");
+    Drawing::parse(&draw(&robot))
 }

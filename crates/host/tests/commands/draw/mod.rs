@@ -18,10 +18,8 @@ fn everything_is_on_the_page_and_large_enough_to_read() {
         let robot = Robot::parse(&text).expect("the robot file is valid");
         for svg in [draw_wiring(&robot), draw_horns(&robot)] {
             let drawing = Drawing::parse(&svg);
-            let (width, height) = {
-                let page = &drawing.elements[0];
-                (page.finite_number("width"), page.finite_number("height"))
-            };
+            let page = &drawing.elements[0];
+            let [width, height] = ["width", "height"].map(|key| page.finite_number(key));
             assert!(width <= 700.0, "wider than a README");
             for element in &drawing.elements[1..] {
                 let mut points = element.points();

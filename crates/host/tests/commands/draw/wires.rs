@@ -1,43 +1,49 @@
 //! Tests of the nets in the wiring drawing.
 
-use std::collections::BTreeMap;
-
-use lizard_host::draw::draw_wiring;
-use lizard_robot::Robot;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::drawing::{Drawing, Point};
-use super::files::{SERVOS, paper_toml, robot_files, servo_value};
+use super::files::{SERVOS, drawing_of, paper_toml, robot_files, servo_value};
+use lizard_host::draw::draw_wiring;
 
 /// Draws the wiring of a robot file.
 fn wiring_of(robot_toml: &str) -> Drawing {
-    let robot = Robot::parse(robot_toml).expect("the robot file is valid");
-    Drawing::parse(&draw_wiring(&robot))
+    drawing_of(draw_wiring, robot_toml)
+}
+
+/// The colour of a pin.
+fn fill_of<'a>(drawing: &'a Drawing, pin: &str) -> &'a str {
+    drawing.element_by_id(pin).attribute("fill")
 }
 
 /// The paper's robot file with other servo pins.
 fn with_pins(pins: [&str; 4]) -> String {
     let mut text = paper_toml();
     for (servo, pin) in SERVOS.into_iter().zip(pins) {
-        let old_entry = format!(
-            "[servo.{servo}]\npin = \"{}\"",
-            servo_value(&paper_toml(), servo, "pin")
-        );
+        let entry_of = |pin: &str| format!("[servo.{servo}]\npin = \"{pin}\"");
+        let old_entry = entry_of(servo_value(&text, servo, "pin"));
         assert!(text.contains(&old_entry));
-        text = text.replace(&old_entry, &format!("[servo.{servo}]\npin = \"{pin}\""));
+        text = text.replace(&old_entry, &entry_of(pin));
     }
     text
 }
 
-/// Sets of four pins, in many orders. 17 is prime, so four pins at equal steps are always distinct.
-fn many_pin_sets() -> Vec<[String; 4]> {
+/// The paper's robot file with sets of four pins, in many orders; each with the pins' names. 17 is prime, so four pins
+/// at equal steps are always distinct.
+fn files_with_many_pin_sets() -> impl Iterator<Item = (String, String)> {
     let pin_name = |number: usize| match number % 17 {
         index @ 0..11 => format!("D{}", index + 2),
         index => format!("A{}", index - 11),
     };
     (1..17)
         .flat_map(|step| (step % 12..17).step_by(12).map(move |start| (start, step)))
-        .map(|(start, step)| [0, 1, 2, 3].map(|servo| pin_name(start + servo * step)))
-        .collect()
+        .map(move |(start, step)| [0, 1, 2, 3].map(|servo| pin_name(start + servo * step)))
+        .map(|pins| {
+            (
+                format!("{pins:?}"),
+                with_pins(pins.each_ref().map(String::as_str)),
+            )
+        })
 }
 
 /// Largest distance of a wire's end from its terminal's centre, px; two wires that share a terminal end beside its
@@ -61,10 +67,8 @@ impl<'a> Nets<'a> {
         for (wire, path) in drawing.wires() {
             let is_option = wire.starts_with("radio-") || wire.starts_with("input-");
             if !wire.starts_with("resistor-") && !is_option {
-                nets.join(
-                    &nets.nearest_terminal(path[0]),
-                    &nets.nearest_terminal(path[path.len() - 1]),
-                );
+                let ends = [path[0], path[path.len() - 1]].map(|end| nets.nearest_terminal(end));
+                nets.join(&ends[0], &ends[1]);
             }
         }
         for (strip, positions, sides) in [
@@ -119,35 +123,21 @@ impl<'a> Nets<'a> {
     /// Asserts that all names are in one net.
     #[track_caller]
     fn assert_joined(&self, names: &[&str]) {
+        let root = self.root(names[0]);
         for name in names {
             // Fails if the drawing does not have the name.
             self.drawing.element_by_id(name);
-            assert_eq!(
-                self.root(name),
-                self.root(names[0]),
-                "{name} and {}",
-                names[0]
-            );
+            assert_eq!(self.root(name), root, "{name} and {}", names[0]);
         }
     }
 }
 
 #[test]
 fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
-    let pin_sets = many_pin_sets();
-    let pin_sets = pin_sets.iter().map(|pins| {
-        let text = with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str()));
-        (format!("{pins:?}"), text)
-    });
-    for (name, text) in robot_files().into_iter().chain(pin_sets) {
+    for (name, text) in robot_files().into_iter().chain(files_with_many_pin_sets()) {
         let drawing = wiring_of(&text);
         let nets = Nets::from_drawing(&drawing);
-        let servo_grounds = [
-            "end-A1-ground",
-            "end-A2-ground",
-            "end-A3-ground",
-            "end-A4-ground",
-        ];
+        let servo_grounds = SERVOS.map(|servo| format!("end-{servo}-ground"));
         let grounds = [
             "end-battery-minus",
             "end-converter-in-minus",
@@ -157,7 +147,7 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
             "end-signals-3-servo",
             "pin-GND",
         ];
-        nets.assert_joined(&[&grounds[..], &servo_grounds].concat());
+        nets.assert_joined(&[&grounds[..], &servo_grounds.each_ref().map(String::as_str)].concat());
         let supplies = ["end-converter-out-plus", "end-capacitor-plus"];
         let servo_supplies = ["end-A1-plus", "end-A2-plus", "end-A3-plus", "end-A4-plus"];
         nets.assert_joined(&[&supplies[..], &servo_supplies].concat());
@@ -173,13 +163,14 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
                 ["battery-balance", "alarm"].map(|component| format!("end-{component}-{number}"));
             nets.assert_joined(&[&battery, &alarm]);
         }
-        let mut net_roots = vec![
-            nets.root("end-battery-plus"),
-            nets.root("end-fuse-1"),
-            nets.root("end-switch-1"),
-            nets.root("end-converter-out-plus"),
-            nets.root("end-battery-minus"),
+        let ends = [
+            "end-battery-plus",
+            "end-fuse-1",
+            "end-switch-1",
+            "end-converter-out-plus",
+            "end-battery-minus",
         ];
+        let mut net_roots = ends.map(|end| nets.root(end)).to_vec();
         for servo in SERVOS {
             let pin = servo_value(&text, servo, "pin");
             let signal = format!("end-{servo}-signal");
@@ -191,16 +182,16 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
             let leads = drawing.points_by_id(&format!("resistor-{servo}"));
             let ends = [leads[0], leads[leads.len() - 1]]
                 .map(|point| nets.root(&nets.nearest_terminal(point)));
-            assert_eq!(
-                ends,
-                [nets.root(&signal), nets.root("pin-GND")],
-                "{name} {servo}"
-            );
+            let nets_of_ends = [nets.root(&signal), nets.root("pin-GND")];
+            assert_eq!(ends, nets_of_ends, "{name} {servo}");
         }
         let net_count = net_roots.len();
-        net_roots.sort();
-        net_roots.dedup();
-        assert_eq!(net_roots.len(), net_count, "{name}: two nets are joined");
+        let distinct_roots: BTreeSet<String> = net_roots.into_iter().collect();
+        assert_eq!(
+            distinct_roots.len(),
+            net_count,
+            "{name}: two nets are joined"
+        );
         // Spare positions are not joined to ground.
         for position in ["end-ground-11-wire", "end-ground-12-wire"] {
             assert_ne!(nets.root(position), nets.root("pin-GND"));
@@ -210,11 +201,10 @@ fn every_component_is_joined_to_what_it_needs_and_to_nothing_else() {
 
 #[test]
 fn removing_any_link_splits_its_strip() {
-    let svg = draw_wiring(&Robot::parse(&paper_toml()).expect("the robot file is valid"));
     let links = (1..10).map(|link| format!("link-ground-{link}"));
     let links = links.chain((1..6).map(|link| format!("link-supply-{link}")));
     for link in links {
-        let mut drawing = Drawing::parse(&svg);
+        let mut drawing = wiring_of(&paper_toml());
         assert!(drawing.has_element(&link), "{link}");
         drawing
             .elements
@@ -230,11 +220,7 @@ fn removing_any_link_splits_its_strip() {
 
 #[test]
 fn wires_cross_but_never_run_into_or_along_each_other() {
-    let pin_sets = many_pin_sets();
-    let pin_sets = pin_sets
-        .iter()
-        .map(|pins| with_pins([0, 1, 2, 3].map(|servo| pins[servo].as_str())));
-    for text in robot_files().into_iter().map(|file| file.1).chain(pin_sets) {
+    for (_, text) in robot_files().into_iter().chain(files_with_many_pin_sets()) {
         let drawing = wiring_of(&text);
         // The wires in the radio's panel may touch each other, so they are left out.
         let mut wires = drawing.wires();
@@ -247,11 +233,12 @@ fn wires_cross_but_never_run_into_or_along_each_other() {
         }
         for (index, (wire, path)) in wires.iter().enumerate() {
             for (other_wire, other_path) in &wires[index + 1..] {
-                for (segment, other_segment) in path.windows(2).flat_map(|segment| {
+                let pairs = path.windows(2).flat_map(|segment| {
                     other_path
                         .windows(2)
                         .map(move |other_segment| (segment, other_segment))
-                }) {
+                });
+                for (segment, other_segment) in pairs {
                     let gap_along = |axis: fn(&Point) -> f64| {
                         let range_of = |segment: &[Point]| {
                             let (start, end) = (axis(&segment[0]), axis(&segment[1]));
@@ -298,11 +285,8 @@ fn the_radio_is_an_option_with_a_diode_to_d0_and_a_divider_from_d1() {
     assert_eq!(points_of("radio-d1")[0], terminal("radio-D1 (TX)"));
     assert_eq!(points_of("radio-rxd")[1], terminal("radio-module-RXD"));
     let [rxd_y, ground_y] = ["radio-rxd", "radio-ground"].map(|name| points_of(name)[0].1);
-    let resistor_points = points_of("radio-2k");
-    assert_eq!(
-        [resistor_points[0].1, resistor_points[1].1],
-        [rxd_y, ground_y]
-    );
+    let resistor_ends = points_of("radio-2k");
+    assert_eq!([0, 1].map(|end| resistor_ends[end].1), [rxd_y, ground_y]);
     for label in ["Option: a radio module", "1 k\u{3a9}", "2 k\u{3a9}"] {
         assert!(drawing.texts().any(|text| text.contains(label)), "{label}");
     }
@@ -328,8 +312,6 @@ fn inputs_are_drawn_as_options_between_their_pins_and_ground() {
         let [wire, terminal] = [name, &terminal].map(|id| both_inputs.points_by_id(id));
         assert_eq!(wire[0], terminal[0]);
     }
-    let fill_of =
-        |drawing: &Drawing, pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
     assert_eq!(
         fill_of(&both_inputs, "pin-A1"),
         fill_of(&both_inputs, "pin-D9")
@@ -361,10 +343,8 @@ fn pins_are_where_a_uno_has_them() {
             (x - origin.0) / scale - (mil.0 - origin_mil.0),
             (origin.1 - y) / scale - (mil.1 - origin_mil.1),
         );
-        assert!(
-            error.0.abs() < 1.0 && error.1.abs() < 1.0,
-            "{name} {error:?}"
-        );
+        let is_small = error.0.abs() < 1.0 && error.1.abs() < 1.0;
+        assert!(is_small, "{name} {error:?}");
     }
 }
 
@@ -377,7 +357,6 @@ fn the_pin_that_measures_the_rail_is_marked() {
     let drawing = wiring_of(&text);
     let note = "A3 measures the +5 V strip, divided by 2.50.";
     assert!(drawing.texts().any(|text| text == note));
-    let fill_of = |pin: &str| drawing.element_by_id(pin).attribute("fill").to_string();
-    assert_eq!(fill_of("pin-A3"), fill_of("pin-D9"));
-    assert_ne!(fill_of("pin-A3"), fill_of("pin-A2"));
+    assert_eq!(fill_of(&drawing, "pin-A3"), fill_of(&drawing, "pin-D9"));
+    assert_ne!(fill_of(&drawing, "pin-A3"), fill_of(&drawing, "pin-A2"));
 }

@@ -1,7 +1,7 @@
 //! Tests of `lizard measure servo`, `steps` and `slope` on rendered films with known true values.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fastrand::Rng;
 use lizard_film::Picture;
@@ -10,15 +10,7 @@ use lizard_studio::encode_jpeg;
 use lizard_studio::servo::Servo;
 use serde_json::Value;
 
-use crate::program::{read_file, run_in, scratch_folder};
-
-/// Creates an empty folder.
-fn new_folder(name: &str) -> PathBuf {
-    let folder = scratch_folder().join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("the folder is created");
-    folder
-}
+use crate::program::{assert_contains, new_folder, read_file, run_in};
 
 /// Writes a picture as a JPEG file that is named after its time.
 fn write_picture(folder: &Path, seconds: f64, picture: &Picture) {
@@ -60,15 +52,10 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
     let mut studio = super::studio();
     (studio.deck_tag_height, studio.exposure_s) = (40.0, 1.0 / 250.0);
     // The poses of A1 go clockwise; counter-clockwise the leg would come too close to its singularity.
-    servo.take_pictures(
-        &studio,
-        -1.0,
-        90.0,
-        &mut Rng::with_seed(9),
-        |seconds, picture| {
-            write_picture(&folder, seconds, picture);
-        },
-    );
+    let mut rng = Rng::with_seed(9);
+    servo.take_pictures(&studio, -1.0, 90.0, &mut rng, |seconds, picture| {
+        write_picture(&folder, seconds, picture);
+    });
     let arguments = [
         "measure", "servo", ".", "--servo", "A1", "--robot", "jig.toml", "--height",
     ];
@@ -83,12 +70,12 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
         "[servo.A1]\nus_per_degree = -11.",
         "Not told: stall_kg_cm",
     ] {
-        assert!(text.contains(expected), "{expected}: {text}");
+        assert_contains(&text, expected);
     }
     let output = measure(&["40", "--volts", "4.5", "--output", "measured.toml"]).expect_success();
-    assert!(
-        output.contains("Written: measured.toml, where [limits] slew is still 1000 deg/s"),
-        "{output}"
+    assert_contains(
+        &output,
+        "Written: measured.toml, where [limits] slew is still 1000 deg/s",
     );
     let [old_text, new_text] = ["jig.toml", "measured.toml"]
         .map(|file| fs::read_to_string(folder.join(file)).expect("the file is readable"));
@@ -111,24 +98,11 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
         "{changed_lines:?}"
     );
     assert_eq!(value_of("volts"), 4.5);
-    assert!(
-        changed_lines
-            .iter()
-            .any(|line| line.contains(", was 10.00")),
-        "{changed_lines:?}"
-    );
+    assert_contains(&changed_lines.join("\n"), ", was 10.00");
     // Only the measured keys, a table header and blank lines are added.
     assert!(new_text.lines().count() - old_text.lines().count() < 8);
-    let refusal = measure(&["40", "--output", "jig.toml"]).expect_refusal();
-    assert!(
-        refusal.contains("jig.toml would be overwritten"),
-        "{refusal}"
-    );
-    let refusal = measure(&["90"]).expect_refusal();
-    assert!(
-        refusal.contains("the tag on the deck, or on the horn, is"),
-        "{refusal}"
-    );
+    measure(&["40", "--output", "jig.toml"]).expect_refusal_with("jig.toml would be overwritten");
+    measure(&["90"]).expect_refusal_with("the tag on the deck, or on the horn, is");
 }
 
 #[test]
@@ -146,17 +120,12 @@ fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
         lines.starts_with("factory\npose 138.59 41.41 318.59 221.41\n"),
         "{lines}"
     );
-    assert!(
-        lines.contains("\npose 108.59 41.41 318.59 221.41\ndir 1 -\ndir 1 +\n"),
-        "{lines}"
+    assert_contains(
+        &lines,
+        "\npose 108.59 41.41 318.59 221.41\ndir 1 -\ndir 1 +\n",
     );
-    let refusal = print_steps("A1", "paper").expect_refusal();
-    assert!(
-        refusal.contains("write slew = 1000.0 under [limits]"),
-        "{refusal}"
-    );
-    let refusal = print_steps("B1", "jig.toml").expect_refusal();
-    assert!(refusal.contains("it is A1, A2, A3 or A4"), "{refusal}");
+    print_steps("A1", "paper").expect_refusal_with("write slew = 1000.0 under [limits]");
+    print_steps("B1", "jig.toml").expect_refusal_with("it is A1, A2, A3 or A4");
 }
 
 #[test]
@@ -175,17 +144,13 @@ fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_add() {
         "measure", "slope", ".", "--robot", "paper", "--height", "83",
     ];
     let measure = |options: &[&str]| run_in(&folder, &[&arguments[..], options].concat(), "");
-    check_figure(
-        &measure(&["--json"]).expect_json(),
-        "friction",
-        sliding_board.sliding_friction,
-        0.02,
-    );
+    let object = measure(&["--json"]).expect_json();
+    check_figure(&object, "friction", sliding_board.sliding_friction, 0.02);
     let text = measure(&[]).expect_success();
     for expected in [
         "[ground]\nfriction = 0.",
         "A film with the head uphill gives friction_back_over_forward",
     ] {
-        assert!(text.contains(expected), "{expected}: {text}");
+        assert_contains(&text, expected);
     }
 }

@@ -37,67 +37,41 @@ fn measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
 
 #[test]
 fn files_without_usable_movements_are_refused_with_advice() {
-    let foreign_file = write_file("foreign.json", r#"{"gaits":[{"gait":"walk","speed":100}]}"#);
-    let message = measure_keys(&[&foreign_file], &[]).expect_refusal();
-    assert!(
-        message.contains("foreign.json") && message.contains("missing field `forward`"),
-        "{message}"
-    );
-    let empty_file = write_file("empty.json", "");
-    let message = measure_keys(&[&empty_file], &[]).expect_refusal();
-    assert!(
-        message.contains("empty.json: this is not what"),
-        "{message}"
-    );
-    let file_without_gaits = write_file("without.json", &gaits_json(&[]));
-    let message = measure_keys(&[&file_without_gaits], &[]).expect_refusal();
-    assert!(message.contains("none of these gaits"), "{message}");
-    let file_with_unknown_gait = write_file(
-        "unknown.json",
-        &gaits_json(&[gait_json("wakl", [30.0, 0.0, 0.0])]),
-    );
-    assert!(
-        measure_keys(&[&file_with_unknown_gait], &[])
-            .expect_refusal()
-            .contains("no gait `wakl`")
-    );
-    let file_without_motion =
-        write_file("still.json", &gaits_json(&[gait_json("stand", [0.0; 3])]));
-    assert!(
-        measure_keys(&[&file_without_motion], &[])
-            .expect_refusal()
-            .contains("moves no servo")
-    );
-    let file_of_other_robot = gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])])
-        .replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
-    let file_of_other_robot = write_file("other.json", &file_of_other_robot);
-    assert!(
-        measure_keys(&[&file_of_other_robot], &[])
-            .expect_refusal()
-            .contains("1.00 s by this robot.toml, but took 1.25 s")
-    );
+    let foreign_file = r#"{"gaits":[{"gait":"walk","speed":100}]}"#.to_owned();
+    let walk_file_of = |gait: &str| gaits_json(&[gait_json(gait, [30.0, 0.0, 0.0])]);
+    let file_without_motion = gaits_json(&[gait_json("stand", [0.0; 3])]);
+    let file_of_other_robot =
+        walk_file_of("walk").replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
+    for (text, expected) in [
+        (&foreign_file, "refused.json: this is not what"),
+        (&foreign_file, "missing field `forward`"),
+        (&String::new(), "refused.json: this is not what"),
+        (&gaits_json(&[]), "none of these gaits"),
+        (&walk_file_of("wakl"), "no gait `wakl`"),
+        (&file_without_motion, "moves no servo"),
+        (
+            &file_of_other_robot,
+            "1.00 s by this robot.toml, but took 1.25 s",
+        ),
+    ] {
+        let file = write_file("refused.json", text);
+        measure_keys(&[&file], &[]).expect_refusal_with(expected);
+    }
 }
 
 #[test]
 fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
-    let movement_file = write_file(
-        "movement.json",
-        &gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])]),
-    );
+    let movements = gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])]);
+    let movement_file = write_file("movement.json", &movements);
     let text = read_file("robots/grain.toml");
     let robot_file = write_file("other-robot.toml", &text);
-    let message = measure_keys(
-        &[&movement_file],
-        &["--output", &robot_file.display().to_string()],
-    )
-    .expect_refusal();
-    assert!(message.contains("describes a robot"), "{message}");
-    let message = measure_keys(
-        &[&movement_file],
-        &["--output", &movement_file.display().to_string()],
-    )
-    .expect_refusal();
-    assert!(message.contains("this command reads it"), "{message}");
+    for (output, reason) in [
+        (&robot_file, "describes a robot"),
+        (&movement_file, "this command reads it"),
+    ] {
+        let output = output.display().to_string();
+        measure_keys(&[&movement_file], &["--output", &output]).expect_refusal_with(reason);
+    }
     let robot_text = fs::read_to_string(&robot_file).expect("the file is readable");
     assert_eq!(robot_text, text);
 }

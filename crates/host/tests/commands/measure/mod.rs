@@ -5,7 +5,7 @@ mod keys;
 mod sheet;
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use fastrand::Rng;
 use lizard_studio::encode_jpeg;
@@ -13,7 +13,10 @@ use lizard_studio::render::{Pose, Studio};
 use lizard_studio::walk::{Variation, Walk, WalkSeries, paper_gait, true_displacement};
 use serde_json::Value;
 
-use crate::program::{run_in, run_line, scratch_folder};
+use crate::program::{
+    Outcome, assert_contains, new_folder, read_file, robot_path, run, run_in, run_line,
+    scratch_folder,
+};
 
 /// Frame rate of the films, pictures per second.
 const PICTURES_PER_SECOND: f64 = 8.0;
@@ -32,21 +35,19 @@ fn studio() -> Studio {
     studio
 }
 
+/// Small differences between the cycles of a walk.
+fn variation() -> Variation {
+    Variation {
+        cycle_deviation: [0.1, 0.1, 0.002],
+        ..Variation::default()
+    }
+}
+
 /// Five cycles of `walk` that differ slightly from each other.
 fn varied_walk() -> Walk {
     let gait = paper_gait("walk");
-    let start = -true_displacement(&gait).forward * 2.5;
-    let variation = Variation {
-        cycle_deviation: [0.1, 0.1, 0.002],
-        ..Variation::default()
-    };
-    Walk::new(
-        &gait,
-        [start, 0.0, 0.0],
-        5,
-        variation,
-        &mut Rng::with_seed(4),
-    )
+    let start = [-true_displacement(&gait).forward * 2.5, 0.0, 0.0];
+    Walk::new(&gait, start, 5, variation(), &mut Rng::with_seed(4))
 }
 
 /// Renders five cycles of `walk` into a new folder.
@@ -64,9 +65,7 @@ fn render_film(
     duration_s: f64,
     pose_at: impl Fn(f64) -> Pose,
 ) -> PathBuf {
-    let folder = scratch_folder().join(folder);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("the folder is created");
+    let folder = new_folder(folder);
     let mut rng = Rng::with_seed(4);
     let background = studio().background(&mut rng);
     for i in 0..(duration_s * PICTURES_PER_SECOND) as usize {
@@ -78,6 +77,12 @@ fn render_film(
     folder
 }
 
+/// Runs `lizard measure` on a film.
+fn measure(film: &Path, options: &[&str]) -> Outcome {
+    let film = film.to_str().expect("the path is UTF-8");
+    run(&[&["measure", film, "--height", "95"], options].concat())
+}
+
 /// The words of a table that are the same for every film: all except numbers and verdicts.
 fn stable_words(table: &str) -> Vec<&str> {
     let verdict_words = ["more", "less", "errors", "agrees"];
@@ -86,10 +91,9 @@ fn stable_words(table: &str) -> Vec<&str> {
         .lines()
         .flat_map(|line| {
             // The component with the largest error depends on the film, so its name is skipped, too.
-            let skipped_words = if line.starts_with("path") {
-                &component_words[..]
-            } else {
-                &[]
+            let skipped_words = match line.starts_with("path") {
+                true => &component_words[..],
+                false => &[],
             };
             let words = line
                 .split_whitespace()
@@ -105,15 +109,12 @@ fn stable_words(table: &str) -> Vec<&str> {
 #[test]
 fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     let folder = render_walk("walk film", |i| format!("walk-{}ms.jpg", i * 125));
-    let folder = folder.to_str().expect("the path is UTF-8");
-    let robot = crate::program::robot_path("paper");
-    let measure = |options: &[&str]| {
-        let arguments = [
-            "measure", folder, "--robot", &robot, "--gait", "walk", "--height", "95",
-        ];
-        run_in(scratch_folder(), &[&arguments[..], options].concat(), "")
+    let robot = robot_path("paper");
+    let measure_walk = |robot: &str, options: &[&str]| {
+        let walk_options = ["--robot", robot, "--gait", "walk"];
+        measure(&folder, &[&walk_options[..], options].concat())
     };
-    let object = measure(&["--json"]).expect_json();
+    let object = measure_walk(&robot, &["--json"]).expect_json();
     let film = object["films"][0].clone();
     let object = object["gaits"][0].clone();
     let number_at = |path: &[&str]| {
@@ -142,12 +143,12 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         object["each"].as_array().map(Vec::len),
         Some(number_at(&["cycles"]) as usize)
     );
-    let figures = crate::program::read_file("tools/physics/figures.json");
+    let figures = read_file("tools/physics/figures.json");
     let figures: Value = serde_json::from_str(&figures).expect("the figures are JSON");
     let mujoco = &figures["paper"]["walk"]["rigid, level"]["mujoco"];
     assert_eq!(&object["mujoco"], mujoco);
     // The stored MuJoCo figures stay valid if a comment is added to robot.toml, but not if the mass changes.
-    let text = crate::program::read_file("robots/paper.toml");
+    let text = read_file("robots/paper.toml");
     let heavier_text = text.replace("mass = 435.0", "mass = 500.0");
     assert_ne!(heavier_text, text);
     for (text, mujoco) in [
@@ -157,22 +158,8 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         let changed_path = scratch_folder().join("changed.toml");
         fs::write(&changed_path, text).expect("the file is written");
         let changed_path = changed_path.to_str().expect("the path is UTF-8");
-        let outcome = run_in(
-            scratch_folder(),
-            &[
-                "measure",
-                folder,
-                "--robot",
-                changed_path,
-                "--gait",
-                "walk",
-                "--height",
-                "95",
-                "--json",
-            ],
-            "",
-        );
-        assert_eq!(&outcome.expect_json()["gaits"][0]["mujoco"], mujoco);
+        let object = measure_walk(changed_path, &["--json"]).expect_json();
+        assert_eq!(&object["gaits"][0]["mujoco"], mujoco);
     }
     let range = &object["range"];
     let predicted = number_at(&["forward", "predicted"]);
@@ -180,22 +167,17 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         ["least", "most"].map(|end| range[end].as_f64().expect("the value is a number"));
     assert!(min < predicted - 5.0 && predicted + 1.0 < max, "{range}");
     assert_eq!(range["least_by"], "mounting of the legs");
-    let table = measure(&[]).expect_success();
+    let table = measure_walk(&robot, &[]).expect_success();
     assert!(table.contains("agrees"), "{table}");
     // The example in docs/measure.md comes from such a film.
-    let page = crate::program::read_file("docs/measure.md");
+    let page = read_file("docs/measure.md");
     let (_, example) = page
         .split_once("--gait walk --height 95\n")
         .expect("the page has the example");
     let (example, _) = example.split_once("```").expect("the example ends");
-    let table = table.replace(folder, "film.mp4");
+    let table = table.replace(&folder.display().to_string(), "film.mp4");
     assert_eq!(stable_words(example), stable_words(&table));
-    let csv = run_in(
-        scratch_folder(),
-        &["measure", folder, "--height", "95", "--csv"],
-        "",
-    )
-    .expect_success();
+    let csv = measure(&folder, &["--csv"]).expect_success();
     assert!(
         csv.starts_with("seconds,forward,left,heading\n0.0000,"),
         "{csv}"
@@ -205,80 +187,49 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         film["pictures"].as_u64()
     );
     // A path that does not fit the named gait is refused; the message names the gait that fits.
-    let outcome = run_in(
-        scratch_folder(),
-        &["measure", folder, "--gait", "left", "--height", "95"],
-        "",
-    );
-    let message = outcome.expect_refusal();
+    let message = measure(&folder, &["--gait", "left"]).expect_refusal();
     assert!(message.contains("was it another gait"), "{message}");
-    assert!(
-        message.trim_end().ends_with("; it is like walk"),
-        "{message}"
-    );
+    assert!(message.ends_with("; it is like walk"), "{message}");
 }
 
 /// The gaits of a result, each with the number of its walks.
 fn walk_counts(object: &Value) -> Vec<(&str, usize)> {
     let gaits = object["gaits"].as_array().expect("the value is an array");
-    let walk_count_of = |result: &Value| result["walks"].as_array().map_or(0, Vec::len);
-    gaits
-        .iter()
-        .map(|result| {
-            (
-                result["gait"].as_str().expect("the gait has a name"),
-                walk_count_of(result),
-            )
-        })
-        .collect()
+    let counts = gaits.iter().map(|result| {
+        let name = result["gait"].as_str().expect("the gait has a name");
+        (name, result["walks"].as_array().map_or(0, Vec::len))
+    });
+    counts.collect()
 }
 
 #[test]
 fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
     let [walk, left] = ["walk", "left"].map(paper_gait);
-    let variation = Variation {
-        cycle_deviation: [0.1, 0.1, 0.002],
-        ..Variation::default()
-    };
     let order = [(&walk, 3), (&left, 4), (&walk, 3)];
-    let series = WalkSeries::new(
-        [-90.0, -20.0, 0.0],
-        &order,
-        2.2,
-        variation,
-        &mut Rng::with_seed(4),
-    );
-    let folder = render_film(
-        "gaits",
-        |i| format!("{i}.jpg"),
-        series.duration_s(),
-        |time| series.pose_at(time),
-    );
-    let folder = folder.to_str().expect("the path is UTF-8");
-    let robot = crate::program::robot_path("paper");
-    let measure = |options: &[&str]| {
-        let arguments = [
-            "measure", folder, "--robot", &robot, "--fps", "8", "--height", "95",
-        ];
-        run_in(scratch_folder(), &[&arguments[..], options].concat(), "")
+    let (start, mut rng) = ([-90.0, -20.0, 0.0], Rng::with_seed(4));
+    let series = WalkSeries::new(start, &order, 2.2, variation(), &mut rng);
+    let name_of = |i| format!("{i}.jpg");
+    let folder = render_film("gaits", name_of, series.duration_s(), |time| {
+        series.pose_at(time)
+    });
+    let robot = robot_path("paper");
+    let measure_gaits = |options: &[&str]| {
+        let film_options = ["--robot", &robot, "--fps", "8"];
+        measure(&folder, &[&film_options[..], options].concat())
     };
     let svg_path = scratch_folder().join("measured.svg");
     let svg_name = svg_path.display().to_string();
     let picture_options = ["--json", "--picture", &svg_name];
-    let unnamed_result = measure(&picture_options).expect_json();
+    let unnamed_result = measure_gaits(&picture_options).expect_json();
     assert_eq!(
         walk_counts(&unnamed_result),
         [("walk", 2), ("left", 1)],
         "{unnamed_result}"
     );
-    let named_result = measure(&["--json", "--gait", "walk,left,walk"]).expect_json();
+    let named_result = measure_gaits(&["--json", "--gait", "walk,left,walk"]).expect_json();
     assert_eq!(walk_counts(&named_result), walk_counts(&unnamed_result));
-    for (result, gait) in unnamed_result["gaits"]
-        .as_array()
-        .expect("the value is an array")
-        .iter()
-        .zip([&walk, &left])
-    {
+    for (index, gait) in [walk, left].iter().enumerate() {
+        let result = &unnamed_result["gaits"][index];
         let truth = true_displacement(gait);
         for (component, truth, max_error) in
             [("forward", truth.forward, 0.3), ("turn", truth.turn, 0.5)]
@@ -297,36 +248,31 @@ fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
         assert!(svg.contains(label), "{label}: {svg}");
     }
     // A gait that is not in the film and gaits in the wrong order are refused.
-    let refusal = measure(&["--gait", "walk,left,walk,back"]).expect_refusal();
+    let refusal = measure_gaits(&["--gait", "walk,left,walk,back"]).expect_refusal();
     assert!(
         refusal.starts_with("lizard: 3 walks between rests of")
             && refusal.contains("names 4: walk, left, walk, back\n")
             && refusal.contains(" s long: like left\n")
-            && refusal.trim_end().ends_with("no walk is like back"),
+            && refusal.ends_with("no walk is like back"),
         "{refusal}"
     );
-    let refusal = measure(&["--gait", "left,walk,walk"]).expect_refusal();
+    let refusal = measure_gaits(&["--gait", "left,walk,walk"]).expect_refusal();
     assert!(
         refusal.contains(" s, left: the path is not that of this gait")
-            && refusal.trim_end().ends_with("; it is like walk"),
+            && refusal.ends_with("; it is like walk"),
         "{refusal}"
     );
 }
 
 #[test]
 fn impossible_measurements_are_refused_with_a_message() {
-    let folder = scratch_folder().join("measure refusals");
-    let _ = fs::remove_dir_all(&folder);
-    let path_in = |name: &str| folder.join(name);
-    fs::create_dir_all(path_in("empty")).expect("the folder is created");
-    fs::create_dir_all(path_in("text")).expect("the folder is created");
-    fs::create_dir_all(path_in("untimed")).expect("the folder is created");
-    fs::write(path_in("text/a.png"), "no picture").expect("the file is written");
-    fs::write(path_in("untimed/frame-001.png"), "").expect("the file is written");
-    let refusal_of = |line: &str| {
-        let arguments: Vec<&str> = line.split(' ').collect();
-        run_in(&folder, &arguments, "").expect_refusal()
-    };
+    let folder = new_folder("measure refusals");
+    for name in ["empty", "text", "untimed"] {
+        fs::create_dir(folder.join(name)).expect("the folder is created");
+    }
+    for (name, text) in [("text/a.png", "no picture"), ("untimed/frame-001.png", "")] {
+        fs::write(folder.join(name), text).expect("the file is written");
+    }
     for (line, message) in [
         ("measure none --gait walk", "lizard: there is no film none"),
         (
@@ -362,7 +308,8 @@ fn impossible_measurements_are_refused_with_a_message() {
             "error: the argument '--csv' cannot be used with '--gait <NAMES>'",
         ),
     ] {
-        let refusal = refusal_of(line);
+        let arguments: Vec<&str> = line.split(' ').collect();
+        let refusal = run_in(&folder, &arguments, "").expect_refusal();
         assert!(refusal.starts_with(message), "{line}: {refusal}");
     }
 }
@@ -381,10 +328,7 @@ fn a_film_without_ffmpeg_says_what_to_install() {
         .output(&mut command, b"")
         .expect("the program exits");
     let message = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        message.contains("install ffmpeg, or give a folder of pictures"),
-        "{message}"
-    );
+    assert_contains(&message, "install ffmpeg, or give a folder of pictures");
     assert_eq!(output.status.code(), Some(1));
 }
 
@@ -420,15 +364,14 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lizard"));
     let path = format!("{}:/usr/bin:/bin", folder.display());
     command.args(["measure", "--gait", "walk", "--height", "95", "--json"]);
-    command.args(["--robot", &crate::program::robot_path("paper")]);
+    command.args(["--robot", &robot_path("paper")]);
     command.arg(folder.join("film")).env("PATH", path);
     let output = lizard_time_limit::LIMIT
         .output(&mut command, b"")
         .expect("the program exits");
     let object: Value = serde_json::from_slice(&output.stdout).expect("the output is JSON");
-    let forward_mm = object["gaits"][0]["forward"]["mean"]
-        .as_f64()
-        .expect("the value is a number");
+    let forward_mm = object["gaits"][0]["forward"]["mean"].as_f64();
+    let forward_mm = forward_mm.expect("the value is a number");
     assert!(
         (forward_mm - true_displacement(&paper_gait("walk")).forward).abs() < 0.2,
         "{object}"
@@ -439,22 +382,9 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
 fn every_number_in_the_json_of_a_film_is_finite() {
     // serde_json writes NaN and infinity as null.
     let folder = render_walk("numbers", |i| format!("{i}.jpg"));
-    let arguments = [
-        "measure",
-        folder.to_str().expect("the path is UTF-8"),
-        "--fps",
-        "8",
-        "--height",
-        "95",
-    ];
-    let options = ["--gait", "walk", "--json"];
-    let object: Value =
-        run_in(scratch_folder(), &[&arguments[..], &options].concat(), "").expect_json();
-    let text = object.to_string();
+    let options = ["--fps", "8", "--gait", "walk", "--json"];
+    let text = measure(&folder, &options).expect_json().to_string();
     assert!(!text.contains("null"), "{text}");
-    assert!(
-        run_line("measure --help", "")
-            .expect_success()
-            .contains("standard error of the mean")
-    );
+    let help = run_line("measure --help", "").expect_success();
+    assert_contains(&help, "standard error of the mean");
 }

@@ -12,15 +12,12 @@ const PIXELS_PER_MM: f64 = 3.0;
 const MM_PER_POINT: f64 = 25.4 / 72.0;
 
 /// The operands of each line of `text` that ends in the PDF operator `operator`.
-fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f64>> + 'a {
+fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f64>> + Clone + 'a {
     let lines = text
         .lines()
         .filter_map(move |line| line.strip_suffix(operator));
-    lines.map(|line| {
-        line.split_whitespace()
-            .filter_map(|word| word.parse().ok())
-            .collect()
-    })
+    let words = lines.map(str::split_whitespace);
+    words.map(|words| words.filter_map(|word| word.parse().ok()).collect())
 }
 
 /// Writes the sheet; returns the PDF's text, and the page's width and height in mm.
@@ -34,11 +31,11 @@ fn write_sheet(paper: &str) -> (String, [f64; 2]) {
     let media_box = text.split_once("/MediaBox [");
     let (_, media_box) = media_box.expect("the PDF has a page size");
     let (media_box, _) = media_box.split_once(']').expect("the page size ends");
-    let size: Vec<f64> = media_box
-        .split(' ')
-        .map(|word| word.parse().expect("the value is a number"))
-        .collect();
-    let size = [size[2] * MM_PER_POINT, size[3] * MM_PER_POINT];
+    let numbers = media_box.split(' ').map(|word| word.parse::<f64>());
+    let numbers: Vec<f64> = numbers
+        .collect::<Result<_, _>>()
+        .expect("the values are numbers");
+    let size = [2, 3].map(|i| numbers[i] * MM_PER_POINT);
     (text, size)
 }
 
@@ -82,14 +79,11 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64
 
 #[test]
 fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
-    for (paper, size_mm) in [("a4", [297.0, 210.0]), ("letter", [279.4, 215.9])] {
+    for (paper, size_mm) in [("a4", [297.0_f64, 210.0]), ("letter", [279.4, 215.9])] {
         let (text, page_mm) = write_sheet(paper);
-        assert!(
-            (page_mm[0] - size_mm[0]).abs() < 0.1 && (page_mm[1] - size_mm[1]).abs() < 0.1,
-            "{page_mm:?}"
-        );
         let (picture, ink_extent) = rasterize(&text, page_mm);
         for (axis, [low, high]) in ink_extent.into_iter().enumerate() {
+            assert!((page_mm[axis] - size_mm[axis]).abs() < 0.1, "{page_mm:?}");
             assert!(
                 low > 5.0 && high < page_mm[axis] - 5.0,
                 "outside the margins of a printer: {ink_extent:?}"
@@ -104,22 +98,15 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
         for tag in &tags {
             let [left, right, ..] = tag.corners;
             let edge_mm = distance_mm(left, right);
-            assert!(
-                (edge_mm - sheet::tag_edge(tag.id)).abs() < 0.4,
-                "{paper} {}: {edge_mm}",
-                tag.id
-            );
-            assert!(
-                left[0] < right[0] && (left[1] - right[1]).abs() < 1.0,
-                "a tag is not upright"
-            );
+            let error_mm = edge_mm - sheet::tag_edge(tag.id);
+            assert!(error_mm.abs() < 0.4, "{paper} {}: {edge_mm}", tag.id);
+            let is_upright = left[0] < right[0] && (left[1] - right[1]).abs() < 1.0;
+            assert!(is_upright, "{paper} {}", tag.id);
         }
         for strip in [0, 2] {
             let spacing_mm = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
-            assert!(
-                (spacing_mm - sheet::TAG_SPACING).abs() < 0.4,
-                "{paper}: {spacing_mm}"
-            );
+            let error_mm = spacing_mm - sheet::TAG_SPACING;
+            assert!(error_mm.abs() < 0.4, "{paper}: {spacing_mm}");
         }
     }
 }
@@ -127,21 +114,16 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
 #[test]
 fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
     let (text, _) = write_sheet("a4");
-    let rectangles: Vec<Vec<f64>> = operands(&text, " re").collect();
+    let rectangles =
+        operands(&text, " re").map(|line| [0, 1, 2, 3].map(|i| line[i] * MM_PER_POINT));
     let lines = rectangles
-        .iter()
-        .filter(|line| (line[2] * MM_PER_POINT - sheet::RULER_LENGTH).abs() < 0.01);
+        .clone()
+        .filter(|line| (line[2] - sheet::RULER_LENGTH).abs() < 0.01);
     assert_eq!(lines.count(), sheet::STRIP_COUNT);
     // The outer edges of the two end ticks are at the ends of the line.
-    let ticks = rectangles
-        .iter()
-        .filter(|line| (line[3] * MM_PER_POINT - 8.0).abs() < 0.01);
-    let ticks: Vec<[f64; 2]> = ticks
-        .map(|tick| [tick[0] * MM_PER_POINT, (tick[0] + tick[2]) * MM_PER_POINT])
-        .collect();
+    let ticks = rectangles.filter(|line| (line[3] - 8.0).abs() < 0.01);
+    let ticks: Vec<[f64; 2]> = ticks.map(|[x, _, width, _]| [x, x + width]).collect();
     assert_eq!(ticks.len(), 2 * sheet::STRIP_COUNT);
-    assert!(
-        (ticks[1][1] - ticks[0][0] - sheet::RULER_LENGTH).abs() < 0.01,
-        "{ticks:?}"
-    );
+    let distance = ticks[1][1] - ticks[0][0];
+    assert!((distance - sheet::RULER_LENGTH).abs() < 0.01, "{ticks:?}");
 }

@@ -1,8 +1,10 @@
 //! Tests that the pages in docs/ agree with the program's output.
 
+use std::collections::BTreeSet;
+
 use lizard_paper::errata::{SAMPLE_COUNT, format_markdown, measure};
 
-use crate::program::{read_file, repo_root, run_line, with_paper};
+use crate::program::{assert_contains, read_file, repo_root, run_line, with_paper};
 
 #[test]
 fn the_errata_page_has_the_measured_figures_and_every_correction_holds() {
@@ -10,17 +12,12 @@ fn the_errata_page_has_the_measured_figures_and_every_correction_holds() {
     assert!(entries.iter().all(|entry| entry.is_settled()));
     // Each printed form has one entry, so no erratum is counted twice.
     let json_entries = run_line("errata --samples 1 --json", "").expect_json();
-    let mut forms: Vec<String> = json_entries
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|entry| entry["printed"].as_str().unwrap().to_string())
-        .filter(|form| form.contains('='))
-        .collect();
-    let count = forms.len();
-    forms.sort_unstable();
-    forms.dedup();
-    assert_eq!(forms.len(), count, "a condition is counted twice");
+    let printed_forms = json_entries.as_array().unwrap().iter();
+    let printed_forms = printed_forms.map(|entry| entry["printed"].as_str().unwrap());
+    let mut forms = BTreeSet::new();
+    for form in printed_forms.filter(|form| form.contains('=')) {
+        assert!(forms.insert(form), "{form} is counted twice");
+    }
     assert!(
         read_file("docs/errata.md") == format_markdown(&entries, SAMPLE_COUNT),
         "docs/errata.md is out of date: lizard errata --markdown > docs/errata.md"
@@ -36,12 +33,10 @@ fn every_command_of_the_page_on_the_paper_prints_the_output_that_the_page_shows(
         let parts = block.split_once('\n');
         let (command, expected_output) = parts.expect("the block has a command and its output");
         let args = command.strip_prefix("$ lizard ").expect(command);
-        let outcome = run_line(&with_paper(args), "");
-        assert_eq!(outcome.code, Some(0), "{args}: {}", outcome.stderr);
+        let output = run_line(&with_paper(args), "").expect_success();
         assert!(
-            outcome.stdout.trim_end() == expected_output.trim_end(),
-            "docs/paper.md is out of date: lizard {args}\n{}",
-            outcome.stdout
+            output.trim_end() == expected_output.trim_end(),
+            "docs/paper.md is out of date: lizard {args}\n{output}"
         );
         command_count += 1;
     }
@@ -53,28 +48,18 @@ fn charts_are_written_as_svg_only_and_are_those_of_the_docs() {
     let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
     let robot = repo_root().join("robots/paper.toml");
     let (folder_path, robot) = (folder.display(), robot.display());
-    let outcome = run_line(
-        &format!("draw charts --json {folder_path} --robot {robot}"),
-        "",
-    );
-    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+    let line = format!("draw charts --json {folder_path} --robot {robot}");
+    run_line(&line, "").expect_success();
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    let expected: Vec<String> = [
-        "conditioning",
-        "performance",
-        "singularity",
-        "stroke",
-        "top-view",
-        "workspace",
-        "workspaces",
-    ]
-    .map(|name| format!("{name}.svg"))
-    .into();
-    assert_eq!(names, expected);
+    assert_eq!(
+        names.join(" "),
+        "conditioning.svg performance.svg singularity.svg stroke.svg top-view.svg workspace.svg \
+         workspaces.svg"
+    );
     for name in &names {
         let svg = std::fs::read_to_string(folder.join(name)).unwrap();
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
@@ -110,24 +95,16 @@ fn table_1_of_the_paper_agrees_with_its_robot_except_for_the_link_that_it_names_
     let rows = TABLE_1
         .iter()
         .flat_map(|(names, mm)| names.split(' ').map(move |name| (name, *mm)));
-    let rows: Vec<_> = rows.collect();
-    let differing_rows: Vec<_> = rows
-        .iter()
-        .filter(|(name, mm)| value_of(name) != *mm)
-        .collect();
-    assert_eq!(differing_rows, [&("l16", 45.0)]);
-    let mut links: Vec<_> = rows
-        .iter()
-        .map(|row| row.0)
-        .filter(|name| name.starts_with('l'))
-        .collect();
-    links.sort_unstable();
-    links.dedup();
+    let differing_rows = rows.clone().filter(|(name, mm)| value_of(name) != *mm);
+    assert_eq!(differing_rows.collect::<Vec<_>>(), [("l16", 45.0)]);
+    let names = rows.map(|(name, _)| name);
+    let links: BTreeSet<&str> = names.filter(|name| name.starts_with('l')).collect();
     assert_eq!(links.len(), 19);
-    assert!(!links.contains(&"l17") && value_of("l17") == 45.0);
-    assert!(
-        read_file("docs/paper.md")
-            .contains("19 of 20 links; l17 is missing and l16 is there twice")
+    assert!(!links.contains("l17") && value_of("l17") == 45.0);
+    let page = read_file("docs/paper.md");
+    assert_contains(
+        &page,
+        "19 of 20 links; l17 is missing and l16 is there twice",
     );
 }
 
@@ -154,10 +131,8 @@ fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
         };
         assert!(!agreement.is_empty(), "{name}");
         for file in files.split(", ") {
-            assert!(
-                repo_root().join("docs").join(file).is_file(),
-                "{name}: {file}"
-            );
+            let path = repo_root().join("docs").join(file);
+            assert!(path.is_file(), "{name}: {file}");
         }
         let Some(command) = command.strip_prefix("`lizard ") else {
             assert_eq!(command, "none", "{name}");
@@ -166,21 +141,15 @@ fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
         let command = command.trim_end_matches('`');
         // Commands with a DIR take seconds, and other tests run them.
         if let Some(base_command) = command.strip_suffix(" DIR") {
-            assert_eq!(
-                run_line(&format!("{base_command} --help"), "").code,
-                Some(0),
-                "{name}"
-            );
-            let chart_name_of = |file: &str| {
-                let chart = file.strip_prefix("charts/")?.strip_suffix(".svg")?;
-                Some(chart.to_owned())
-            };
-            for chart in files.split(", ").filter_map(chart_name_of) {
-                assert!(charts.contains(&chart), "{name}: {chart}");
+            run_line(&format!("{base_command} --help"), "").expect_success();
+            let chart_names = files
+                .split(", ")
+                .filter_map(|file| file.strip_prefix("charts/")?.strip_suffix(".svg"));
+            for chart in chart_names {
+                assert!(charts.contains(chart), "{name}: {chart}");
             }
         } else {
-            let outcome = run_line(&with_paper(command), "");
-            assert_eq!(outcome.code, Some(0), "{name}: {}", outcome.stderr);
+            run_line(&with_paper(command), "").expect_success();
         }
     }
 }
@@ -188,15 +157,9 @@ fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
 #[test]
 fn the_figures_of_the_papers_walk_on_the_page_are_those_of_the_gaits() {
     let page = read_file("docs/paper.md").replace('\n', " ");
-    let rows = run_line(&with_paper("gaits --json"), "").expect_success();
+    let rows = run_line(&with_paper("gaits --json"), "").expect_json_lines();
     let prediction_of = |gait: &str, key: &str| -> f64 {
-        let rows = rows
-            .lines()
-            .map(|row| serde_json::from_str::<serde_json::Value>(row).expect("the output is JSON"));
-        let row = rows
-            .into_iter()
-            .find(|row| row["gait"] == gait)
-            .expect(gait);
+        let row = rows.iter().find(|row| row["gait"] == gait).expect(gait);
         row["predicted"][key].as_f64().expect(key)
     };
     let (walk_mm, left_deg) = (
@@ -207,11 +170,10 @@ fn the_figures_of_the_papers_walk_on_the_page_are_those_of_the_gaits() {
     let table = run_line(&with_paper("gaits --sensitivity"), "").expect_success();
     let numbers_of = |heading: &str, name: &str| -> Vec<f64> {
         let (_, rows) = table.split_once(heading).expect(heading);
-        let row = rows
-            .lines()
-            .find_map(|line| line.strip_prefix(&format!("{name} ")));
-        let row = row.expect(name).split_whitespace();
-        row.filter_map(|word| word.parse().ok()).collect()
+        let prefix = format!("{name} ");
+        let row = rows.lines().find_map(|line| line.strip_prefix(&prefix));
+        let words = row.expect(name).split_whitespace();
+        words.filter_map(|word| word.parse().ok()).collect()
     };
     // The third column of mounts is for 41.4 deg, and the fourth of friction for a ratio of 1.25. The row of a turn has
     // two numbers in each column.

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::program::{read_file, run_line, with_paper};
+use crate::program::{assert_contains, read_file, run_line, with_paper};
 
 /// Runs a command with the paper's robot, and parses its output as JSON.
 fn paper_json(args: &str) -> Value {
@@ -11,6 +11,18 @@ fn paper_json(args: &str) -> Value {
 
 fn number_of(value: &Value) -> f64 {
     value.as_f64().expect("the value is a number")
+}
+
+/// Checks that a number differs from another by less than `tolerance`.
+#[track_caller]
+fn assert_near(value: &Value, expected: f64, tolerance: f64) {
+    let error = number_of(value) - expected;
+    assert!(error.abs() < tolerance, "{value} is not {expected}");
+}
+
+/// The elements of a JSON array.
+fn elements(value: &Value) -> &[Value] {
+    value.as_array().expect("the value is an array")
 }
 
 #[test]
@@ -26,14 +38,14 @@ fn the_papers_design_has_its_dimensions_and_its_conditioning_only_as_a_mean() {
         ("y_mic", 48.990, 1e-3),
     ];
     for (key, value, tolerance) in expected_values {
-        assert!((number_of(&design[key]) - value).abs() < tolerance, "{key}");
+        assert_near(&design[key], value, tolerance);
     }
     let lci = &design["lci"];
-    assert!((number_of(&lci["mean"]) - 0.736).abs() < 5e-4);
-    assert!((number_of(&lci["share_above"]) - 0.668).abs() < 1e-3);
-    assert!((number_of(&lci["radius_above"]) - 15.45).abs() < 0.01);
+    assert_near(&lci["mean"], 0.736, 5e-4);
+    assert_near(&lci["share_above"], 0.668, 1e-3);
+    assert_near(&lci["radius_above"], 15.45, 0.01);
     assert!(number_of(&lci["least"]) < 1e-6);
-    assert!((number_of(&lci["most"]) - 1.0).abs() < 1e-6);
+    assert_near(&lci["most"], 1.0, 1e-6);
 }
 
 #[test]
@@ -43,44 +55,37 @@ fn a_design_of_another_size_keeps_its_shape() {
     assert!((number_of(&large["d"]) / number_of(&small["d"]) - 3.0).abs() < 1e-12);
     assert!((number_of(&large["area"]) / number_of(&small["area"]) - 9.0).abs() < 1e-9);
     for key in ["mean", "share_above"] {
-        assert!((number_of(&large["lci"][key]) - number_of(&small["lci"][key])).abs() < 1e-6);
+        assert_near(&large["lci"][key], number_of(&small["lci"][key]), 1e-6);
     }
 }
 
 #[test]
 fn the_charts_cover_the_whole_triangle_and_hold_the_papers_design() {
     let points = run_line("design --chart --json --step 0.05", "").expect_json();
-    let points = points.as_array().unwrap();
+    let points = elements(&points);
     // Every (i, j) with r3 = 0.9 - 0.05 (i + j) between 0 and 0.45.
-    let expected = (1..18)
-        .flat_map(|i| (1..18).map(move |j| i + j))
-        .filter(|sum| (10..18).contains(sum))
-        .count();
+    let sums = (1..18).flat_map(|i| (1..18).map(move |j| i + j));
+    let expected = sums.filter(|sum| (10..18).contains(sum)).count();
     assert_eq!(points.len(), expected);
-    let paper = points
-        .iter()
-        .find(|point| {
-            (number_of(&point["r1"]) - 0.3).abs() < 1e-9
-                && (number_of(&point["r2"]) - 0.5).abs() < 1e-9
-        })
-        .unwrap();
-    assert!((number_of(&paper["r_mic"]) - 0.3).abs() < 1e-9);
-    assert!((number_of(&paper["area"]) - 1.48926).abs() < 1e-5);
-    assert!((number_of(&paper["lci"]["mean"]) - 0.736).abs() < 5e-3);
+    let is_near = |value: &Value, expected: f64| (number_of(value) - expected).abs() < 1e-9;
+    let is_paper = |point: &&Value| is_near(&point["r1"], 0.3) && is_near(&point["r2"], 0.5);
+    let paper = points.iter().find(is_paper).unwrap();
+    assert_near(&paper["r_mic"], 0.3, 1e-9);
+    assert_near(&paper["area"], 1.48926, 1e-5);
+    assert_near(&paper["lci"]["mean"], 0.736, 5e-3);
 }
 
 #[test]
 fn the_search_gives_designs_within_the_limits_the_best_first() {
     let designs = paper_json("design --search --json --step 0.05 --top 50");
-    let designs = designs.as_array().unwrap();
+    let designs = elements(&designs);
     assert!(!designs.is_empty());
     let mut previous_score = f64::INFINITY;
     for design in designs {
         let d = number_of(&design["d"]);
-        assert!(
-            number_of(&design["r1"]) * d >= 20.0 - 1e-9
-                && number_of(&design["r2"]) * d >= 20.0 - 1e-9
-        );
+        for link in ["r1", "r2"] {
+            assert!(number_of(&design[link]) * d >= 20.0 - 1e-9, "{design}");
+        }
         assert!(number_of(&design["margin"]) >= 0.3 && number_of(&design["sweep"]) >= 20.0);
         assert!(number_of(&design["score"]) <= previous_score);
         previous_score = number_of(&design["score"]);
@@ -90,29 +95,18 @@ fn the_search_gives_designs_within_the_limits_the_best_first() {
 #[test]
 fn gruebler_count_and_rank_give_the_body_four_freedoms_and_each_leg_one() {
     let mechanisms = paper_json("pose --show freedoms --json");
-    let freedoms: Vec<(i64, i64)> = mechanisms
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|mechanism| {
-            (
-                mechanism["gruebler"].as_i64().unwrap(),
-                mechanism["freedoms"].as_i64().unwrap(),
-            )
-        })
-        .collect();
-    assert_eq!(freedoms, [(4, 4), (1, 1), (1, 1), (1, 1), (1, 1)]);
+    let mechanisms = elements(&mechanisms);
+    assert_eq!(mechanisms.len(), 5);
+    for (mechanism, freedoms) in mechanisms.iter().zip([4, 1, 1, 1, 1]) {
+        assert_eq!(mechanism["gruebler"], freedoms, "{mechanism}");
+        assert_eq!(mechanism["freedoms"], freedoms, "{mechanism}");
+    }
     assert_eq!(mechanisms[0]["rank"], 32);
     // A flat leg gains a freedom, which Gruebler's count does not show.
     let flat_leg_mechanisms =
         paper_json("pose --show freedoms --json --theta1 138 --theta4 0 --theta5 221 --theta8 318");
-    assert_eq!(
-        (
-            &flat_leg_mechanisms[2]["gruebler"],
-            &flat_leg_mechanisms[2]["freedoms"]
-        ),
-        (&Value::from(1), &Value::from(2))
-    );
+    assert_eq!(flat_leg_mechanisms[2]["gruebler"], 1);
+    assert_eq!(flat_leg_mechanisms[2]["freedoms"], 2);
 }
 
 #[test]
@@ -120,32 +114,22 @@ fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
     let report = paper_json(
         "pose --show singularities --json --theta1 120 --theta4 70 --theta5 230 --theta8 310",
     );
-    let (eliminated_determinant, factored_determinant) = (
-        number_of(&report["determinant"]),
-        number_of(&report["factored"]),
-    );
-    assert!((eliminated_determinant / factored_determinant - 1.0).abs() < 1e-9);
+    let [eliminated, factored] = ["determinant", "factored"].map(|key| number_of(&report[key]));
+    assert!((eliminated / factored - 1.0).abs() < 1e-9);
     let start_angles = [120.0, 70.0, 310.0, 230.0];
     let mut previous_distance = 0.0;
-    for near_pose in report["nearest"].as_array().unwrap() {
+    for near_pose in elements(&report["nearest"]) {
         let distance = number_of(&near_pose["distance"]);
         assert!(distance >= previous_distance);
         previous_distance = distance;
-        let near_angles: Vec<f64> = (0..4)
-            .map(|i| start_angles[i] + number_of(&near_pose["turn"][i]))
-            .collect();
-        let pose = format!(
-            "theta1,theta4,theta8,theta5\n{},{},{},{}\n",
-            near_angles[0], near_angles[1], near_angles[2], near_angles[3]
-        );
+        let [a1, a2, a3, a4] =
+            [0, 1, 2, 3].map(|i| start_angles[i] + number_of(&near_pose["turn"][i]));
+        let pose = format!("theta1,theta4,theta8,theta5\n{a1},{a2},{a3},{a4}\n");
         let solution = run_line(&with_paper("pose --json"), pose).expect_json();
-        let margins: Vec<f64> = match solution["margins"].as_object() {
-            Some(margins) => margins.values().map(number_of).collect(),
-            None => vec![0.0],
-        };
-        let min_margin = margins
-            .iter()
-            .fold(1.0_f64, |min_margin, margin| min_margin.min(margin.abs()));
+        let min_margin = solution["margins"].as_object().map_or(0.0, |margins| {
+            let margins = margins.values().map(number_of);
+            margins.map(f64::abs).fold(1.0, f64::min)
+        });
         assert!(min_margin < 1e-4, "{} {min_margin}", near_pose["what"]);
     }
 }
@@ -154,14 +138,15 @@ fn the_determinant_is_that_of_its_blocks_and_the_nearest_pose_is_singular() {
 fn rates_agree_with_differences_of_positions() {
     let options = "--omega1 120 --omega4 -80 --omega5 60 --omega8 90 --alpha1 500 --alpha8 -700";
     let rows = paper_json(&format!("pose --show rates --json {options}"));
-    for row in rows.as_array().unwrap() {
-        assert!(
-            number_of(&row["rate_deviation"]).abs() < 1e-6 * (1.0 + number_of(&row["rate"]).abs())
-        );
-        assert!(
-            number_of(&row["acceleration_deviation"]).abs()
-                < 1e-6 * (100.0 + number_of(&row["acceleration"]).abs())
-        );
+    for row in elements(&rows) {
+        for (key, smallest) in [("rate", 1.0), ("acceleration", 100.0)] {
+            let deviation = &row[format!("{key}_deviation")];
+            assert_near(
+                deviation,
+                0.0,
+                1e-6 * (smallest + number_of(&row[key]).abs()),
+            );
+        }
     }
 }
 
@@ -192,7 +177,7 @@ fn the_angles_for_a_point_lead_back_to_the_point() {
         ("20 105.5", false),
     ] {
         let report = paper_json(&format!("pose --json --head {point}"));
-        let modes = report["head"]["working_modes"].as_array().unwrap();
+        let modes = elements(&report["head"]["working_modes"]);
         assert_eq!(modes.len(), 4);
         for mode in modes {
             assert!(number_of(&mode["error_mm"]) < 1e-9, "{point}");
@@ -209,11 +194,9 @@ fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
         .expect("the robot file is valid");
     let look = robot.gait("look").expect("the robot has the gesture");
     for i in 0..1000 {
-        let solution = robot
-            .lizard()
-            .solve(&look.pose(f64::from(i) / 1000.0))
-            .unwrap();
-        assert!(solution.head.lci() >= 0.7, "{}", solution.head.lci());
+        let pose = look.pose(f64::from(i) / 1000.0);
+        let lci = robot.lizard().solve(&pose).unwrap().head.lci();
+        assert!(lci >= 0.7, "{lci}");
     }
 }
 
@@ -221,21 +204,16 @@ fn the_papers_gesture_look_stays_where_the_conditioning_is_at_least_0_7() {
 fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
     let freedoms_at = |pose: &str| paper_json(&format!("pose --show freedoms --json {pose}"));
     let home_mechanisms = freedoms_at("");
-    for mechanism in home_mechanisms.as_array().unwrap() {
+    for mechanism in elements(&home_mechanisms) {
         assert_eq!(mechanism["locked_freedoms"], 0, "{mechanism}");
     }
     // At these angles the crank tips coincide to about six digits.
-    let head_mechanisms =
-        freedoms_at("--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41");
+    let head_pose = "--theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41";
+    let head_body = &freedoms_at(head_pose)[0];
+    assert_eq!(head_body["freedoms"], 4);
+    assert_eq!(head_body["locked_freedoms"], 1);
     assert_eq!(
-        (
-            &head_mechanisms[0]["freedoms"],
-            &head_mechanisms[0]["locked_freedoms"]
-        ),
-        (&Value::from(4), &Value::from(1))
-    );
-    assert_eq!(
-        head_mechanisms[0]["loose"][0],
+        head_body["loose"][0],
         "the head's end point is loose (type 2)"
     );
     let tail_mechanisms =
@@ -244,22 +222,10 @@ fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
         tail_mechanisms[0]["loose"][0],
         "the tail's end point is loose (type 2)"
     );
-    let outcome = run_line(
-        &with_paper(
-            "pose --show freedoms --theta1 70.528779 --theta4 109.471221 --theta8 318.59 --theta5 221.41",
-        ),
-        "",
-    );
-    assert!(
-        !outcome.stdout.contains("four servos hold the body"),
-        "{}",
-        outcome.stdout
-    );
-    assert!(
-        outcome.stdout.contains("the head's end point is loose"),
-        "{}",
-        outcome.stdout
-    );
+    let line = with_paper(&format!("pose --show freedoms {head_pose}"));
+    let text = run_line(&line, "").stdout;
+    assert!(!text.contains("four servos hold the body"), "{text}");
+    assert_contains(&text, "the head's end point is loose");
     // A flat leg is loose even with its crank locked.
     let flat_leg_mechanisms = freedoms_at("--theta1 138 --theta4 0 --theta8 318 --theta5 221");
     assert_eq!(flat_leg_mechanisms[2]["locked_freedoms"], 1);
@@ -268,10 +234,10 @@ fn at_type_2_the_locked_servos_leave_the_papers_end_point_loose() {
 #[test]
 fn a_design_with_a_wide_base_has_an_inscribed_circle() {
     let design = run_line("design --json --r1 0.2 --r2 0.3", "").expect_json();
-    assert!((number_of(&design["r_mic"]) - 2.5).abs() < 1e-9);
+    assert_near(&design["r_mic"], 2.5, 1e-9);
     assert_eq!(number_of(&design["y_mic"]), 0.0);
     let points = run_line("design --chart --json --step 0.05", "").expect_json();
-    for point in points.as_array().unwrap() {
+    for point in elements(&points) {
         assert!(number_of(&point["r_mic"]) > 0.0, "{point}");
     }
 }
@@ -285,21 +251,18 @@ fn matrices_name_their_rows_and_columns_in_servo_order() {
     );
     for (matrix, columns) in [("k", 4), ("k_star", 8)] {
         let matrix = &report[matrix];
-        assert_eq!(matrix["rows"].as_array().unwrap().len(), 8);
-        assert_eq!(matrix["columns"].as_array().unwrap().len(), columns);
-        for row in matrix["values"].as_array().unwrap() {
-            assert_eq!(row.as_array().unwrap().len(), columns);
+        assert_eq!(elements(&matrix["rows"]).len(), 8);
+        assert_eq!(elements(&matrix["columns"]).len(), columns);
+        for row in elements(&matrix["values"]) {
+            assert_eq!(elements(row).len(), columns);
         }
     }
     // The rows of the head depend only on the front servos, those of the tail only on the back servos.
     for (row, is_front) in [(0, true), (1, true), (2, false), (3, false)] {
         for column in 0..4 {
             let entry = number_of(&report["k"]["values"][row][column]);
-            assert_eq!(
-                entry != 0.0,
-                (column < 2) == is_front,
-                "{row} {column} {entry}"
-            );
+            let may_depend = (column < 2) == is_front;
+            assert_eq!(entry != 0.0, may_depend, "{row} {column} {entry}");
         }
     }
 }

@@ -3,32 +3,21 @@
 use lizard_kinematics::wrap;
 use serde_json::Value;
 
-use crate::program::{RobotFile, run_line, with_paper};
+use crate::program::{RobotFile, assert_contains, run_line, with_paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
 fn solve_lines(input: &str) -> Vec<Value> {
-    let outcome = run_line(&with_paper("pose --json"), input);
-    assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
-    outcome
-        .stdout
-        .lines()
-        .map(|line| serde_json::from_str(line).expect("the output is JSON"))
-        .collect()
+    run_line(&with_paper("pose --json"), input).expect_json_lines()
 }
 
 #[test]
 fn a_solution_in_json_has_exactly_the_documented_keys() {
     let solution = &solve_lines(&format!("{HEADER}138,42,318,221\n"))[0];
     let keys_of = |value: &Value| {
-        let mut keys: Vec<&str> = value
-            .as_object()
-            .unwrap()
-            .keys()
-            .map(String::as_str)
-            .collect();
-        keys.sort_unstable();
-        keys.join(" ")
+        let keys = value.as_object().unwrap().keys().map(String::as_str);
+        let keys: std::collections::BTreeSet<&str> = keys.collect();
+        Vec::from_iter(keys).join(" ")
     };
     assert_eq!(
         keys_of(solution),
@@ -52,13 +41,9 @@ fn every_printed_solution_closes_all_loops() {
     let mut poses = Vec::new();
     for i in 0..2000 {
         let angle_at = |min: f64, stride: usize| min + (i * stride % 997) as f64 * 90.0 / 997.0;
-        let pose = [
-            angle_at(85.0, 31),
-            angle_at(10.0, 57),
-            angle_at(265.0, 211),
-            angle_at(190.0, 101),
-        ];
-        input += &format!("{},{},{},{}\n", pose[0], pose[1], pose[2], pose[3]);
+        let starts_and_strides = [(85.0, 31), (10.0, 57), (265.0, 211), (190.0, 101)];
+        let pose = starts_and_strides.map(|(min, stride)| angle_at(min, stride));
+        input += &(pose.map(|angle| angle.to_string()).join(",") + "\n");
         poses.push(pose);
     }
     let solutions = solve_lines(&input);
@@ -79,24 +64,13 @@ fn every_printed_solution_closes_all_loops() {
             let y = a[1] + b[1] - c[1] - d[1] - ground[1];
             assert!(x.hypot(y) < 1e-9, "{x} {y}");
         };
-        assert_closed(
-            [
-                vector(30.0, t1),
-                vector(50.0, angle_of("theta2")),
-                vector(50.0, angle_of("theta3")),
-                vector(30.0, t4),
-            ],
-            [20.0, 0.0],
-        );
-        assert_closed(
-            [
-                vector(30.0, t5),
-                vector(50.0, angle_of("theta6")),
-                vector(50.0, angle_of("theta7")),
-                vector(30.0, t8),
-            ],
-            [20.0, 0.0],
-        );
+        for (left, coupler, right_coupler, right) in
+            [(t1, "theta2", "theta3", t4), (t5, "theta6", "theta7", t8)]
+        {
+            let couplers = [coupler, right_coupler].map(|key| vector(50.0, angle_of(key)));
+            let [left, right] = [left, right].map(|theta| vector(30.0, theta));
+            assert_closed([left, couplers[0], couplers[1], right], [20.0, 0.0]);
+        }
         for (side, rear, front) in [
             ("left", t5 - 90.0, t1 + 90.0),
             ("right", t8 + 90.0, t4 - 90.0),
@@ -138,12 +112,7 @@ fn a_singular_row_states_its_reason_and_the_next_rows_are_solved() {
     ));
     assert_eq!(solutions.len(), 3);
     assert_eq!(solutions[0]["safe"], false);
-    assert!(
-        solutions[0]["why"][0]
-            .as_str()
-            .unwrap()
-            .contains("singular")
-    );
+    assert_contains(solutions[0]["why"][0].as_str().unwrap(), "singular");
     assert!(solutions[0]["theta2"].is_null());
     assert_eq!(
         solutions[1]["why"][0],
@@ -162,13 +131,9 @@ fn columns_come_in_any_order_and_line_ends_and_quotes_do_not_matter() {
 
 #[test]
 fn angles_by_options_and_by_input_give_the_same_solution() {
-    let option_solution = run_line(
-        &with_paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139"),
-        "",
-    )
-    .expect_json();
+    let line = with_paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139");
     assert_eq!(
-        option_solution,
+        run_line(&line, "").expect_json(),
         solve_lines(&format!("{HEADER}138,42,-42,-139\n"))[0]
     );
 }
@@ -189,11 +154,9 @@ fn a_long_stream_keeps_its_order() {
 
 #[test]
 fn the_table_is_aligned_and_marks_safe_poses() {
-    let outcome = run_line(
-        &with_paper("pose"),
-        format!("{HEADER}138,42,318,221\n60,60,318,221\n"),
-    );
-    let lines: Vec<&str> = outcome.stdout.lines().collect();
+    let input = format!("{HEADER}138,42,318,221\n60,60,318,221\n");
+    let table = run_line(&with_paper("pose"), input).stdout;
+    let lines: Vec<&str> = table.lines().collect();
     assert_eq!(lines.len(), 3);
     let bar_columns =
         |line: &str| -> Vec<usize> { line.match_indices('|').map(|(i, _)| i).collect() };
@@ -205,67 +168,39 @@ fn the_table_is_aligned_and_marks_safe_poses() {
 #[test]
 fn without_a_header_the_columns_are_the_servos_in_order() {
     let named_solutions = solve_lines(&format!("{HEADER}138,42,318,221\n100,40,-50,220\n"));
-    assert_eq!(
-        solve_lines("138,42,318,221\n100,40,-50,220\n"),
-        named_solutions
-    );
-    assert_eq!(
-        solve_lines("\u{feff}138,42,318,221\n\"100\",40,-50,220"),
-        named_solutions
-    );
+    for input in [
+        "138,42,318,221\n100,40,-50,220\n",
+        "\u{feff}138,42,318,221\n\"100\",40,-50,220",
+    ] {
+        assert_eq!(solve_lines(input), named_solutions);
+    }
 }
 
 #[test]
 fn a_time_is_passed_through() {
     let solutions = solve_lines("theta1,seconds,theta4,theta8,theta5\n138,0.02,42,318,221\n");
     assert_eq!(solutions[0]["seconds"], 0.02);
-    let table = run_line(
-        &with_paper("pose"),
-        "seconds,theta1,theta4,theta8,theta5\n0.02,138,42,318,221\n",
-    );
-    let rows: Vec<&str> = table.stdout.lines().collect();
-    assert!(
-        rows[0].trim_start().starts_with("seconds |"),
-        "{}",
-        table.stdout
-    );
-    assert!(
-        rows[1].trim_start().starts_with("0.02 |"),
-        "{}",
-        table.stdout
-    );
-    assert_eq!(rows[0].find("| safe"), rows[1].find("| safe"));
+    let input = "seconds,theta1,theta4,theta8,theta5\n0.02,138,42,318,221\n";
+    let table = run_line(&with_paper("pose"), input).stdout;
+    let rows: Vec<&str> = table.lines().map(str::trim_start).collect();
+    assert!(rows[0].starts_with("seconds |"), "{table}");
+    assert!(rows[1].starts_with("0.02 |"), "{table}");
+    let mut safe_columns = table.lines().map(|row| row.find("| safe"));
+    assert_eq!(safe_columns.next(), safe_columns.next());
 }
 
 #[test]
 fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
     // This holds for any robot.toml: every gait of a valid file keeps the file's limits.
-    let gaits = run_line("gaits --json", "");
-    assert_eq!(gaits.code, Some(0), "{}", gaits.stderr);
-    for gait in gaits.stdout.lines() {
-        let gait: Value = serde_json::from_str(gait).expect("the output is JSON");
+    for gait in run_line("gaits --json", "").expect_json_lines() {
         let name = gait["gait"].as_str().unwrap();
-        let trace = run_line(&format!("gaits --trace {name}"), "");
-        let solved_outcome = run_line("pose --json", trace.stdout.as_bytes());
-        assert_eq!(
-            solved_outcome.code,
-            Some(0),
-            "{name}: {}",
-            solved_outcome.stderr
-        );
-        assert_eq!(
-            solved_outcome.stdout.lines().count(),
-            trace.stdout.lines().count() - 1
-        );
-        for (line, row) in solved_outcome
-            .stdout
-            .lines()
-            .zip(trace.stdout.lines().skip(1))
-        {
-            let solution: Value = serde_json::from_str(line).expect("the output is JSON");
+        let trace = run_line(&format!("gaits --trace {name}"), "").stdout;
+        let solutions = run_line("pose --json", &trace).expect_json_lines();
+        assert_eq!(solutions.len(), trace.lines().count() - 1);
+        for (solution, row) in solutions.iter().zip(trace.lines().skip(1)) {
             let fields: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
             assert_eq!(solution["seconds"], fields[0], "{name}");
-            assert_eq!(solution["safe"], true, "{name} {row}: {line}");
+            assert_eq!(solution["safe"], true, "{name} {row}: {solution}");
             // The columns are in the order of the legs.
             for (leg, angle) in ["lf", "rf", "rh", "lh"].iter().zip(&fields[1..]) {
                 let follower = solution["legs"][leg]["follower"].as_f64().unwrap();
@@ -290,56 +225,27 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
             format!("pose --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41");
         run_line(&robot.add_option_to(&pose), "").expect_json()
     };
-    assert_eq!(
-        pose_at(318.590378 + 20.0)["safe"],
-        true,
-        "the end of the travel"
-    );
+    let end_of_travel = pose_at(318.590378 + 20.0);
+    assert_eq!(end_of_travel["safe"], true);
     let beyond_travel = pose_at(318.590378 + 20.1);
     assert_eq!(beyond_travel["safe"], false);
     assert_eq!(
         beyond_travel["why"][0],
         "servo A3 would turn +20.1 deg from neutral to 338.7 deg, its travel is 266.1 to 338.6 deg"
     );
-    let page = run_line(
-        &robot.add_option_to("pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41"),
-        "",
-    );
-    assert!(
-        page.stdout
-            .contains("safe     no, servo A3 would turn +20.2"),
-        "{}",
-        page.stdout
-    );
-    let table = run_line(&robot.add_option_to("pose"), "138.59,41.41,338.8,221.41\n");
-    assert!(
-        table.stdout.contains("| servo A3 would turn"),
-        "{}",
-        table.stdout
-    );
+    let line = "pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41";
+    let page = run_line(&robot.add_option_to(line), "").stdout;
+    assert_contains(&page, "safe     no, servo A3 would turn +20.2");
+    let table = run_line(&robot.add_option_to("pose"), "138.59,41.41,338.8,221.41\n").stdout;
+    assert_contains(&table, "| servo A3 would turn");
     // The inverse kinematics, too, reports the tail point of that pose as unreachable.
-    let tail_point: Vec<f64> = beyond_travel["tail"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|coordinate| coordinate.as_f64().unwrap())
-        .collect();
-    let inverse = run_line(
-        &robot.add_option_to(&format!(
-            "pose --json --tail {} {}",
-            tail_point[0], tail_point[1]
-        )),
-        "",
-    )
-    .expect_json();
+    let [x, y] = [0, 1].map(|axis| beyond_travel["tail"][axis].as_f64().unwrap());
+    let line = robot.add_option_to(&format!("pose --json --tail {x} {y}"));
+    let inverse = run_line(&line, "").expect_json();
     assert_eq!(inverse["safe"], false);
-    let reasons = inverse["why"].as_array().unwrap();
-    assert!(
-        reasons
-            .iter()
-            .any(|reason| reason.as_str().unwrap().starts_with("servo A3")),
-        "{reasons:?}"
-    );
+    let mut reasons = inverse["why"].as_array().unwrap().iter();
+    let is_about_servo = |reason: &Value| reason.as_str().unwrap().starts_with("servo A3");
+    assert!(reasons.any(is_about_servo), "{inverse}");
     assert_eq!(inverse["tail"]["working_modes"][0]["reachable"], false);
 }
 
@@ -352,16 +258,12 @@ fn zero_is_printed_without_a_minus() {
         "pose --show singularities",
         "pose --head -0.0001 120 --tail -0.0001 -120",
     ] {
-        let outcome = run_line(&with_paper(args), "");
-        let zeros = outcome
-            .stdout
-            .split(|c: char| c.is_whitespace() || "(),|".contains(c))
-            .filter(|word| word.starts_with("-0.") && word[3..].bytes().all(|digit| digit == b'0'));
-        assert_eq!(
-            zeros.collect::<Vec<_>>(),
-            [""; 0],
-            "{args}\n{}",
-            outcome.stdout
-        );
+        let text = run_line(&with_paper(args), "").stdout;
+        let mut words = text.split(|c: char| c.is_whitespace() || "(),|".contains(c));
+        let is_negative_zero = |word: &str| {
+            word.strip_prefix("-0.")
+                .is_some_and(|digits| digits.bytes().all(|digit| digit == b'0'))
+        };
+        assert!(!words.any(is_negative_zero), "{args}\n{text}");
     }
 }
