@@ -6,10 +6,9 @@
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use super::wire::{BLACK, THIN_WIDTH, draw_terminal};
+use super::wire::{BLACK, THIN_WIDTH, draw_option_panel, draw_terminal};
 use crate::shared::ink::{
-    DARK, GREY, ORANGE, RED, circle, curve, line, outlined, pin_name, rectangle, text_end,
-    text_start,
+    DARK, ORANGE, RED, circle, curve, line, outlined, pin_name, rectangle, text_end, text_start,
 };
 
 /// Height of the panel, pixels.
@@ -35,12 +34,8 @@ pub fn panel_height(robot: &Robot) -> f64 {
 
 /// Draws the panel with its upper edge at y = `top`.
 pub fn draw(robot: &Robot, top: f64) -> Group {
-    let frame = rectangle((16.0, top), (668.0, PANEL_HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
-    let frame = outlined(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
     let title = "Option: inputs, for routines that wait or turn away";
-    let mut group = Group::new()
-        .add(frame)
-        .add(text_start(title, (30.0, top + 26.0), 15.0).set("font-weight", "bold"));
+    let mut group = draw_option_panel(top, PANEL_HEIGHT, title);
     for (name, pin) in robot.inputs().named_pins() {
         group = match name {
             "button" => draw_button(group, pin, top + BUTTON_ROW_Y),
@@ -54,97 +49,51 @@ pub fn draw(robot: &Robot, top: f64) -> Group {
 fn draw_wire(group: Group, names: [&str; 3], y: f64, colour: &'static str) -> Group {
     let [component, board_pin, label] = names;
     // The wire crosses no other wire, so it needs no white edge, which would cut the component's outline.
-    let path = curve(
-        &[(BOARD_PINS_X, y), (COMPONENT_PINS_X, y)],
-        colour,
-        THIN_WIDTH,
-    );
+    let ends = [(BOARD_PINS_X, y), (COMPONENT_PINS_X, y)];
+    let path = curve(&ends, colour, THIN_WIDTH);
+    let board_label = format!("UNO {board_pin}");
+    let terminals = [
+        format!("{component}-{board_pin}"),
+        format!("{component}-at-{board_pin}"),
+    ];
     group
         .add(path.set("id", format!("input-{component}-{board_pin}")))
-        .add(text_end(
-            &format!("UNO {board_pin}"),
-            (BOARD_PINS_X - 10.0, y + 5.0),
-            13.0,
-        ))
+        .add(text_end(&board_label, (BOARD_PINS_X - 10.0, y + 5.0), 13.0))
         .add(text_start(label, (COMPONENT_PINS_X + 40.0, y + 5.0), 13.0))
-        .add(draw_terminal(
-            &format!("{component}-{board_pin}"),
-            (BOARD_PINS_X, y),
-            DARK,
-        ))
-        .add(draw_terminal(
-            &format!("{component}-at-{board_pin}"),
-            (COMPONENT_PINS_X, y),
-            DARK,
-        ))
+        .add(draw_terminal(&terminals[0], ends[0], DARK))
+        .add(draw_terminal(&terminals[1], ends[1], DARK))
+}
+
+/// Draws the case of a component with its first row at y = `y` and its last row `height` below it.
+fn draw_case(group: Group, y: f64, height: f64) -> Group {
+    let corner = (COMPONENT_PINS_X - 12.0, y - 14.0);
+    let case = rectangle(corner, (44.0, height + 28.0), "#e6eef7").set("rx", 5);
+    group.add(outlined(case, DARK, 1.5))
 }
 
 /// Draws a push button between its pin, at y = `y`, and ground.
 fn draw_button(group: Group, pin: u8, y: f64) -> Group {
-    let case = rectangle(
-        (COMPONENT_PINS_X - 12.0, y - 14.0),
-        (44.0, ROW_HEIGHT + 28.0),
-        "#e6eef7",
-    )
-    .set("rx", 5);
-    let middle_y = y + ROW_HEIGHT / 2.0;
-    let group = group
-        .add(outlined(case, DARK, 1.5))
-        .add(line(
-            (COMPONENT_PINS_X, y),
-            (COMPONENT_PINS_X + 16.0, y),
-            DARK,
-            THIN_WIDTH,
-        ))
-        .add(line(
-            (COMPONENT_PINS_X, y + ROW_HEIGHT),
-            (COMPONENT_PINS_X + 16.0, y + ROW_HEIGHT),
-            DARK,
-            THIN_WIDTH,
-        ))
-        .add(outlined(
-            circle((COMPONENT_PINS_X + 20.0, middle_y), 8.0, "white"),
-            DARK,
-            1.5,
-        ));
-    let group = draw_wire(
-        group,
-        ["button", &pin_name(pin), "push button, closes when pressed"],
-        y,
-        ORANGE,
-    );
-    draw_wire(
-        group,
-        ["button", "GND", "its other contact"],
-        y + ROW_HEIGHT,
-        BLACK,
-    )
+    let draw_contact = |y: f64| {
+        let (start, end) = ((COMPONENT_PINS_X, y), (COMPONENT_PINS_X + 16.0, y));
+        line(start, end, DARK, THIN_WIDTH)
+    };
+    let middle = (COMPONENT_PINS_X + 20.0, y + ROW_HEIGHT / 2.0);
+    let group = draw_case(group, y, ROW_HEIGHT)
+        .add(draw_contact(y))
+        .add(draw_contact(y + ROW_HEIGHT))
+        .add(outlined(circle(middle, 8.0, "white"), DARK, 1.5));
+    let names = ["button", &pin_name(pin), "push button, closes when pressed"];
+    let group = draw_wire(group, names, y, ORANGE);
+    let names = ["button", "GND", "its other contact"];
+    draw_wire(group, names, y + ROW_HEIGHT, BLACK)
 }
 
 /// Draws the infrared obstacle switch of the robot's nose, with its first row at y = `y`.
 fn draw_obstacle_switch(group: Group, pin: u8, y: f64) -> Group {
-    let case = rectangle(
-        (COMPONENT_PINS_X - 12.0, y - 14.0),
-        (44.0, 2.0 * ROW_HEIGHT + 28.0),
-        "#e6eef7",
-    )
-    .set("rx", 5);
-    let group = group.add(outlined(case, DARK, 1.5));
-    let group = draw_wire(
-        group,
-        [
-            "nose",
-            &pin_name(pin),
-            "OUT of the obstacle switch, low at a wall",
-        ],
-        y,
-        ORANGE,
-    );
+    let group = draw_case(group, y, 2.0 * ROW_HEIGHT);
+    let label = "OUT of the obstacle switch, low at a wall";
+    let group = draw_wire(group, ["nose", &pin_name(pin), label], y, ORANGE);
     let group = draw_wire(group, ["nose", "GND", "GND"], y + ROW_HEIGHT, BLACK);
-    draw_wire(
-        group,
-        ["nose", "5V", "VCC, 3.3 to 5 V, at most 40 mA"],
-        y + 2.0 * ROW_HEIGHT,
-        RED,
-    )
+    let names = ["nose", "5V", "VCC, 3.3 to 5 V, at most 40 mA"];
+    draw_wire(group, names, y + 2.0 * ROW_HEIGHT, RED)
 }

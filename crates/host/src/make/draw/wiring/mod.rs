@@ -122,38 +122,21 @@ fn servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     for (index, servo) in order.into_iter().enumerate() {
         let (x, name) = (servo_x(index), SERVO_NAMES[servo]);
         let ground_hole = strips::ground_hole(supply::FIRST_SERVO_WAY + index);
-        let ground_path = vec![
-            (x + LEAD_OFFSET, SERVO_TOP_Y),
-            (x + LEAD_OFFSET, ground_hole.1),
-            ground_hole,
-        ];
-        wires.push(Wire::new(
-            format!("ground-{name}"),
-            ground_path,
-            BROWN,
-            THIN_WIDTH,
-        ));
         // The first ways of the strip belong to the converter and the capacitor.
         let supply_hole = strips::supply_hole(strips::SUPPLY_WAY_COUNT - 1 - index);
-        let supply_path = vec![
-            (x - LEAD_OFFSET, SERVO_TOP_Y),
-            (x - LEAD_OFFSET, supply_hole.1),
-            supply_hole,
-        ];
-        wires.push(Wire::new(
-            format!("plus-{name}"),
-            supply_path,
-            RED,
-            THIN_WIDTH,
-        ));
+        for (kind, x, hole, colour) in [
+            ("ground", x + LEAD_OFFSET, ground_hole, BROWN),
+            ("plus", x - LEAD_OFFSET, supply_hole, RED),
+        ] {
+            let path = vec![(x, SERVO_TOP_Y), (x, hole.1), hole];
+            let name = format!("{kind}-{name}");
+            wires.push(Wire::new(name, path, colour, THIN_WIDTH));
+        }
     }
     let indices: [usize; 4] = [0, 1, 2, 3];
     let servo_points = indices.map(|index| (servo_x(index), SERVO_TOP_Y + SERVO_SIZE.1));
-    let paths = paths_between_rows(
-        &servo_points,
-        &indices.map(strips::servo_hole),
-        SIGNAL_WIRES_Y[0],
-    );
+    let strip_holes = indices.map(strips::servo_hole);
+    let paths = paths_between_rows(&servo_points, &strip_holes, SIGNAL_WIRES_Y[0]);
     for (servo, path) in order.into_iter().zip(paths) {
         let name = format!("signal-{}", SERVO_NAMES[servo]);
         wires.push(Wire::new(name, path, ORANGE, THIN_WIDTH));
@@ -207,61 +190,40 @@ fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     let colour = SERVO_COLOURS[servo];
     let corner = (x - SERVO_SIZE.0 / 2.0, SERVO_TOP_Y);
     let name = SERVO_NAMES[servo];
-    Group::new()
+    let shaft = (x, SERVO_TOP_Y + 32.0);
+    let case = rectangle(corner, SERVO_SIZE, colour).set("rx", 5);
+    let pin_text = format!("to {}", pin_name(pin));
+    let text_x = x + 28.0;
+    let mut group = Group::new()
         .add(rectangle(corner, SERVO_SIZE, "white").set("rx", 5))
-        .add(outlined(
-            rectangle(corner, SERVO_SIZE, colour)
-                .set("rx", 5)
-                .set("fill-opacity", 0.18),
-            colour,
-            2,
-        ))
-        .add(outlined(
-            circle((x, SERVO_TOP_Y + 32.0), 15.0, "white"),
-            colour,
-            2,
-        ))
-        .add(circle((x, SERVO_TOP_Y + 32.0), 5.0, DARK))
+        .add(outlined(case.set("fill-opacity", 0.18), colour, 2))
+        .add(outlined(circle(shaft, 15.0, "white"), colour, 2))
+        .add(circle(shaft, 5.0, DARK))
         .add(text_middle(name, (x, SERVO_TOP_Y + 72.0), 20.0).set("font-weight", "bold"))
         .add(text_start(
             SERVO_PLACES[servo],
-            (x + 28.0, SERVO_TOP_Y + 28.0),
+            (text_x, SERVO_TOP_Y + 28.0),
             12.0,
         ))
-        .add(text_start(
-            &format!("to {}", pin_name(pin)),
-            (x + 28.0, SERVO_TOP_Y + 46.0),
-            13.0,
-        ))
-        .add(draw_terminal(
-            &format!("{name}-ground"),
-            (x + LEAD_OFFSET, SERVO_TOP_Y),
-            BROWN,
-        ))
-        .add(draw_terminal(
-            &format!("{name}-plus"),
-            (x - LEAD_OFFSET, SERVO_TOP_Y),
-            RED,
-        ))
-        .add(draw_terminal(
-            &format!("{name}-signal"),
-            (x, SERVO_TOP_Y + SERVO_SIZE.1),
-            ORANGE,
-        ))
+        .add(text_start(&pin_text, (text_x, SERVO_TOP_Y + 46.0), 13.0));
+    for (lead, point, colour) in [
+        ("ground", (x + LEAD_OFFSET, SERVO_TOP_Y), BROWN),
+        ("plus", (x - LEAD_OFFSET, SERVO_TOP_Y), RED),
+        ("signal", (x, SERVO_TOP_Y + SERVO_SIZE.1), ORANGE),
+    ] {
+        group = group.add(draw_terminal(&format!("{name}-{lead}"), point, colour));
+    }
+    group
 }
 
 /// Draws the cable to a computer, and a cross at the 5V pin, which stays free.
 fn draw_board_notes() -> Group {
     let pin_5v = UNO.five_volt_point();
-    let lower_edge_y = UNO.lower_right_corner().1;
+    let note_point = (pin_5v.0, UNO.lower_right_corner().1 + 17.0);
     let usb_y = UNO.upper_left_corner.1 + 82.0;
     Group::new()
         .add(cross(pin_5v, 6.0, RED, 2.5))
-        .add(text_middle(
-            "no servo at 5V",
-            (pin_5v.0, lower_edge_y + 17.0),
-            13.0,
-        ))
+        .add(text_middle("no servo at 5V", note_point, 13.0))
         .add(line((44.0, usb_y), (84.0, usb_y), GREY, 7.0))
         .add(text_start("computer", (42.0, usb_y - 12.0), 13.0))
 }

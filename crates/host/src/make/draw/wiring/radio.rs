@@ -6,10 +6,11 @@
 
 use svg::node::element::{Group, Polygon};
 
-use super::wire::{BLACK, LEG_WIDTH, THIN_WIDTH, Wire, draw_terminal};
+use super::wire::{
+    BLACK, LEG_WIDTH, THIN_WIDTH, Wire, draw_option_panel, draw_resistor, draw_terminal,
+};
 use crate::shared::ink::{
-    DARK, GREY, ORANGE, RED, circle, curve, line, outlined, rectangle, text_end, text_middle,
-    text_start,
+    DARK, ORANGE, RED, circle, curve, line, outlined, rectangle, text_end, text_middle, text_start,
 };
 
 /// Height of the panel, pixels.
@@ -35,75 +36,46 @@ const ROWS: [(&str, &str, f64); 4] = [
 /// Draws the panel with its upper edge at y = `top`.
 pub fn draw(top: f64) -> Group {
     let y_of = |row: usize| top + ROWS[row].2;
-    let row_path = |row: usize, from: f64, to: f64| vec![(from, y_of(row)), (to, y_of(row))];
-    let frame = rectangle((16.0, top), (668.0, PANEL_HEIGHT - 12.0), "#fbfbf4").set("rx", 8);
-    let frame = outlined(frame, GREY, 1.5).set("stroke-dasharray", "7 5");
+    let row_wire = |name, row: usize, [from, to]: [f64; 2], colour| {
+        let path = vec![(from, y_of(row)), (to, y_of(row))];
+        Wire::new(name, path, colour, THIN_WIDTH)
+    };
     let divider_path = vec![(DIVIDER_X, y_of(1)), (DIVIDER_X, y_of(2))];
     let wires = [
-        Wire::new(
-            "radio-d0",
-            row_path(0, BOARD_PINS_X, DIODE_X - 12.0),
-            ORANGE,
-            THIN_WIDTH,
-        ),
-        Wire::new(
-            "radio-txd",
-            row_path(0, DIODE_X + 12.0, MODULE_PINS_X),
-            ORANGE,
-            THIN_WIDTH,
-        ),
-        Wire::new(
+        row_wire("radio-d0", 0, [BOARD_PINS_X, DIODE_X - 12.0], ORANGE),
+        row_wire("radio-txd", 0, [DIODE_X + 12.0, MODULE_PINS_X], ORANGE),
+        row_wire(
             "radio-d1",
-            row_path(1, BOARD_PINS_X, UPPER_RESISTOR_X - 14.0),
+            1,
+            [BOARD_PINS_X, UPPER_RESISTOR_X - 14.0],
             ORANGE,
-            THIN_WIDTH,
         ),
-        Wire::new(
+        row_wire(
             "radio-rxd",
-            row_path(1, UPPER_RESISTOR_X + 14.0, MODULE_PINS_X),
+            1,
+            [UPPER_RESISTOR_X + 14.0, MODULE_PINS_X],
             ORANGE,
-            THIN_WIDTH,
         ),
         Wire::new("radio-2k", divider_path, DARK, LEG_WIDTH),
-        Wire::new(
-            "radio-ground",
-            row_path(2, BOARD_PINS_X, MODULE_PINS_X),
-            BLACK,
-            THIN_WIDTH,
-        ),
-        Wire::new(
-            "radio-vcc",
-            row_path(3, BOARD_PINS_X, MODULE_PINS_X),
-            RED,
-            THIN_WIDTH,
-        ),
+        row_wire("radio-ground", 2, [BOARD_PINS_X, MODULE_PINS_X], BLACK),
+        row_wire("radio-vcc", 3, [BOARD_PINS_X, MODULE_PINS_X], RED),
     ];
-    let mut group = Group::new().add(frame).add(
-        text_start(
-            "Option: a radio module, to drive without a cable",
-            (30.0, top + 26.0),
-            15.0,
-        )
-        .set("font-weight", "bold"),
-    );
+    let title = "Option: a radio module, to drive without a cable";
+    let mut group = draw_option_panel(top, PANEL_HEIGHT, title);
     // These wires cross nothing, and the white edge of `Wire::draw` would cut the frame.
     for wire in wires {
         let path = curve(&wire.path, wire.colour, wire.width);
         group = group.add(path.set("id", wire.name));
     }
     group = draw_diode(group, (DIODE_X, y_of(0)));
-    group = draw_resistor(group, (UPPER_RESISTOR_X, y_of(1)), (28.0, 10.0)).add(text_middle(
-        "1 k\u{3a9}",
-        (UPPER_RESISTOR_X, y_of(1) - 10.0),
-        13.0,
-    ));
+    let upper_label_point = (UPPER_RESISTOR_X, y_of(1) - 10.0);
     let lower_resistor = (DIVIDER_X, (y_of(1) + y_of(2)) / 2.0);
-    group = draw_resistor(group, lower_resistor, (10.0, 26.0)).add(text_start(
-        "2 k\u{3a9}",
-        (DIVIDER_X + 12.0, lower_resistor.1 + 5.0),
-        13.0,
-    ));
+    let lower_label_point = (DIVIDER_X + 12.0, lower_resistor.1 + 5.0);
     group = group
+        .add(draw_resistor((UPPER_RESISTOR_X, y_of(1)), (28.0, 10.0)))
+        .add(text_middle("1 k\u{3a9}", upper_label_point, 13.0))
+        .add(draw_resistor(lower_resistor, (10.0, 26.0)))
+        .add(text_start("2 k\u{3a9}", lower_label_point, 13.0))
         .add(circle((DIVIDER_X, y_of(1)), 4.5, ORANGE))
         .add(circle((DIVIDER_X, y_of(2)), 4.5, BLACK))
         .add(text_middle(
@@ -119,27 +91,17 @@ pub fn draw(top: f64) -> Group {
     ));
     for (pin, module_pin, offset) in ROWS {
         let y = top + offset;
+        let [board_label, terminal, module_terminal] = [
+            format!("UNO {pin}"),
+            format!("radio-{pin}"),
+            format!("radio-module-{module_pin}"),
+        ];
+        let [board_label_x, label_x] = [BOARD_PINS_X - 10.0, MODULE_PINS_X + 10.0];
         group = group
-            .add(text_end(
-                &format!("UNO {pin}"),
-                (BOARD_PINS_X - 10.0, y + 5.0),
-                13.0,
-            ))
-            .add(text_start(
-                module_pin,
-                (MODULE_PINS_X + 10.0, y + 5.0),
-                13.0,
-            ))
-            .add(draw_terminal(
-                &format!("radio-{pin}"),
-                (BOARD_PINS_X, y),
-                DARK,
-            ))
-            .add(draw_terminal(
-                &format!("radio-module-{module_pin}"),
-                (MODULE_PINS_X, y),
-                DARK,
-            ));
+            .add(text_end(&board_label, (board_label_x, y + 5.0), 13.0))
+            .add(text_start(module_pin, (label_x, y + 5.0), 13.0))
+            .add(draw_terminal(&terminal, (BOARD_PINS_X, y), DARK))
+            .add(draw_terminal(&module_terminal, (MODULE_PINS_X, y), DARK));
     }
     let note = "The diode's stripe is at the module. It lets the module only pull D0 low, so USB still works.";
     group.add(text_start(note, (30.0, top + 220.0), 13.0))
@@ -147,25 +109,12 @@ pub fn draw(top: f64) -> Group {
 
 /// Draws a diode that conducts from left to right, with its stripe at the right.
 fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
-    let corners = format!(
-        "{},{} {},{} {},{}",
-        x - 12.0,
-        y - 9.0,
-        x - 12.0,
-        y + 9.0,
-        x + 8.0,
-        y
-    );
+    let [left, upper, lower, tip] = [x - 12.0, y - 9.0, y + 9.0, x + 8.0];
+    let corners = format!("{left},{upper} {left},{lower} {tip},{y}");
     group
         .add(line((x - 12.0, y), (x + 12.0, y), DARK, LEG_WIDTH))
         .add(Polygon::new().set("points", corners).set("fill", DARK))
         .add(line((x + 9.0, y - 9.0), (x + 9.0, y + 9.0), DARK, 3.0))
         .add(draw_terminal("diode-anode", (x - 12.0, y), DARK))
         .add(draw_terminal("diode-cathode", (x + 12.0, y), DARK))
-}
-
-fn draw_resistor(group: Group, (x, y): (f64, f64), (width, height): (f64, f64)) -> Group {
-    let corner = (x - width / 2.0, y - height / 2.0);
-    let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
-    group.add(outlined(body, DARK, 1.5))
 }

@@ -5,8 +5,7 @@
 
 use svg::node::element::Group;
 
-use super::wire::{BLACK, LEG_WIDTH, THICK_WIDTH, Wire, draw_terminal};
-use crate::make::draw::route::Path;
+use super::wire::{BLACK, LEG_WIDTH, THICK_WIDTH, Wire, draw_resistor, draw_terminal};
 use crate::shared::ink::{
     DARK, ORANGE, RED, circle, line, outlined, rectangle, text_middle, text_start,
 };
@@ -76,12 +75,9 @@ pub fn signal_ground_hole() -> (f64, f64) {
 
 /// The hole of the signal strip for a servo's jumper to the board; `index` counts the servos from left to right.
 pub fn board_hole(index: usize) -> (f64, f64) {
-    let offset = if index < 2 {
-        -JUMPER_OFFSET
-    } else {
-        JUMPER_OFFSET
-    };
-    (signal_way_x(way_of_servo(index)) + offset, SIGNAL_EDGES_Y.1)
+    let side = if index < 2 { -1.0 } else { 1.0 };
+    let x = signal_way_x(way_of_servo(index)) + side * JUMPER_OFFSET;
+    (x, SIGNAL_EDGES_Y.1)
 }
 
 /// The hole of the signal strip for the board's ground.
@@ -91,35 +87,26 @@ pub fn board_ground_hole() -> (f64, f64) {
 
 /// The links of the ground strip and of the +5 V strip.
 pub fn link_wires() -> Vec<Wire> {
-    let link_wire = |name: String, reach: f64, from: (f64, f64)| {
-        let (x, y) = from;
-        let path: Path = vec![
-            (x, y),
-            (x + reach, y),
-            (x + reach, y + PITCH),
-            (x, y + PITCH),
-        ];
-        Wire::new(
-            name,
-            path,
-            if reach > 0.0 { BLACK } else { RED },
-            THICK_WIDTH - 1.0,
-        )
+    let link_wire = |name: String, (x, y): (f64, f64), side: f64, colour| {
+        let x = x + side * STRIP_WIDTH;
+        let far_x = x + side * LINK_REACH;
+        let path = vec![(x, y), (far_x, y), (far_x, y + PITCH), (x, y + PITCH)];
+        Wire::new(name, path, colour, THICK_WIDTH - 1.0)
     };
     let ground_links = (1..LINKED_GROUND_WAY_COUNT).map(|way| {
-        let (x, y) = ground_hole(way - 1);
         link_wire(
             format!("link-ground-{way}"),
-            LINK_REACH,
-            (x + STRIP_WIDTH, y),
+            ground_hole(way - 1),
+            1.0,
+            BLACK,
         )
     });
     let supply_links = (1..SUPPLY_WAY_COUNT).map(|way| {
-        let (x, y) = supply_hole(way - 1);
         link_wire(
             format!("link-supply-{way}"),
-            -LINK_REACH,
-            (x - STRIP_WIDTH, y),
+            supply_hole(way - 1),
+            -1.0,
+            RED,
         )
     });
     ground_links.chain(supply_links).collect()
@@ -130,24 +117,22 @@ pub fn link_wires() -> Vec<Wire> {
 pub fn resistor_wires(names: [&str; 4]) -> Vec<Wire> {
     let resistor_wire = |(index, name): (usize, &str)| {
         // The leads of the outer resistors run below those of the inner ones, so that they do not cross.
-        let (ground_offset, is_inner) = match index {
-            0 => (-5.0, false),
-            1 => (-11.0, true),
-            2 => (11.0, true),
-            _ => (5.0, false),
+        let (ground_offset, reach) = match index {
+            0 => (-5.0, 35.0),
+            1 => (-11.0, 17.0),
+            2 => (11.0, 17.0),
+            _ => (5.0, 35.0),
         };
-        let offset = if index < 2 {
-            JUMPER_OFFSET
-        } else {
-            -JUMPER_OFFSET
-        };
-        let from = (signal_way_x(way_of_servo(index)) + offset, SIGNAL_EDGES_Y.1);
-        let to = (
-            signal_way_x(SIGNAL_GROUND_WAY) + ground_offset,
-            SIGNAL_EDGES_Y.1,
-        );
-        let low_y = SIGNAL_EDGES_Y.1 + if is_inner { 17.0 } else { 35.0 };
-        let path = vec![from, (from.0, low_y), (to.0, low_y), to];
+        let y = SIGNAL_EDGES_Y.1;
+        let side = if index < 2 { 1.0 } else { -1.0 };
+        let from_x = signal_way_x(way_of_servo(index)) + side * JUMPER_OFFSET;
+        let to_x = signal_way_x(SIGNAL_GROUND_WAY) + ground_offset;
+        let path = vec![
+            (from_x, y),
+            (from_x, y + reach),
+            (to_x, y + reach),
+            (to_x, y),
+        ];
         Wire::new(format!("resistor-{name}"), path, DARK, LEG_WIDTH)
     };
     names.into_iter().enumerate().map(resistor_wire).collect()
@@ -158,10 +143,7 @@ pub fn draw_resistor_bodies() -> Group {
     let mut group = Group::new();
     for (way, y_offset) in [(0, 35.0), (1, 17.0), (2, 17.0), (3, 35.0)] {
         let x = (signal_way_x(way) + signal_way_x(way + 1)) / 2.0;
-        let (width, height) = (22.0, 9.0);
-        let corner = (x - width / 2.0, SIGNAL_EDGES_Y.1 + y_offset - height / 2.0);
-        let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
-        group = group.add(outlined(body, DARK, 1.5));
+        group = group.add(draw_resistor((x, SIGNAL_EDGES_Y.1 + y_offset), (22.0, 9.0)));
     }
     let point = (signal_way_x(4) + 22.0, SIGNAL_EDGES_Y.1 + 31.0);
     group
@@ -171,15 +153,11 @@ pub fn draw_resistor_bodies() -> Group {
 
 /// Adds a way of a strip, its brass tube and its number, to `group`.
 fn draw_way(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
-    let centre = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
+    let (x, y) = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
     group
         .add(line(from, to, "#c9b26b", 7.0))
-        .add(circle(centre, 8.5, "white"))
-        .add(text_middle(
-            &number.to_string(),
-            (centre.0, centre.1 + 4.5),
-            12.0,
-        ))
+        .add(circle((x, y), 8.5, "white"))
+        .add(text_middle(&number.to_string(), (x, y + 4.5), 12.0))
 }
 
 fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectangle {
@@ -188,22 +166,14 @@ fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectan
 
 /// Draws the three strips.
 pub fn draw() -> Group {
-    let mut group = Group::new();
-    let draw_upright_strip = |way_count: usize, left: f64, top: f64| {
+    let draw_upright_strip = |way_count: usize, (left, top): (f64, f64)| {
         let size = (STRIP_WIDTH, PITCH * way_count as f64);
         draw_case((left, top - PITCH / 2.0), size)
     };
-    group = group
-        .add(draw_upright_strip(
-            GROUND_WAY_COUNT,
-            FIRST_GROUND_HOLE.0,
-            FIRST_GROUND_HOLE.1,
-        ))
-        .add(draw_upright_strip(
-            SUPPLY_WAY_COUNT,
-            FIRST_SUPPLY_HOLE.0 - STRIP_WIDTH,
-            FIRST_SUPPLY_HOLE.1,
-        ));
+    let supply_strip = (FIRST_SUPPLY_HOLE.0 - STRIP_WIDTH, FIRST_SUPPLY_HOLE.1);
+    let mut group = Group::new()
+        .add(draw_upright_strip(GROUND_WAY_COUNT, FIRST_GROUND_HOLE))
+        .add(draw_upright_strip(SUPPLY_WAY_COUNT, supply_strip));
     let upright_strips = [("ground", GROUND_WAY_COUNT), ("supply", SUPPLY_WAY_COUNT)];
     for (name, way_count) in upright_strips {
         for way in 0..way_count {
@@ -212,17 +182,11 @@ pub fn draw() -> Group {
                 _ => (supply_hole(way), -STRIP_WIDTH),
             };
             let link_point = (hole.0 + link_offset, hole.1);
-            group = draw_way(group, hole, link_point, way + 1)
-                .add(draw_terminal(
-                    &format!("{name}-{}-wire", way + 1),
-                    hole,
-                    DARK,
-                ))
-                .add(draw_terminal(
-                    &format!("{name}-{}-link", way + 1),
-                    link_point,
-                    DARK,
-                ));
+            group = draw_way(group, hole, link_point, way + 1);
+            for (side, point) in [("wire", hole), ("link", link_point)] {
+                let name = format!("{name}-{}-{side}", way + 1);
+                group = group.add(draw_terminal(&name, point, DARK));
+            }
         }
     }
     let (top, bottom) = SIGNAL_EDGES_Y;
@@ -233,49 +197,25 @@ pub fn draw() -> Group {
     ));
     for way in 0..5 {
         let x = signal_way_x(way);
-        group = draw_way(group, (x, top + 3.0), (x, bottom - 3.0), way + 1)
-            .add(draw_terminal(
-                &format!("signals-{}-servo", way + 1),
-                (x, top),
-                ORANGE,
-            ))
-            .add(draw_terminal(
-                &format!("signals-{}-board", way + 1),
-                (x, bottom),
-                ORANGE,
-            ));
+        group = draw_way(group, (x, top + 3.0), (x, bottom - 3.0), way + 1);
+        for (side, y) in [("servo", top), ("board", bottom)] {
+            let name = format!("signals-{}-{side}", way + 1);
+            group = group.add(draw_terminal(&name, (x, y), ORANGE));
+        }
     }
     let lower_end_y = FIRST_GROUND_HOLE.1 + PITCH * GROUND_WAY_COUNT as f64;
+    for (label, y_offset) in [("ground", 4.0), ("strip,", 19.0), ("12 ways", 34.0)] {
+        let point = (FIRST_GROUND_HOLE.0 + 20.0, lower_end_y + y_offset);
+        group = group.add(text_middle(label, point, 13.0));
+    }
+    let supply_end_y = FIRST_SUPPLY_HOLE.1 + PITCH * SUPPLY_WAY_COUNT as f64;
+    for (label, point) in [
+        ("+5 V strip", (46.0, supply_end_y + 4.0)),
+        ("6 ways", (46.0, supply_end_y + 20.0)),
+        ("signal strip, 5 ways:", (76.0, top + 16.0)),
+        ("3 is ground", (76.0, top + 32.0)),
+    ] {
+        group = group.add(text_start(label, point, 13.0));
+    }
     group
-        .add(text_middle(
-            "ground",
-            (FIRST_GROUND_HOLE.0 + 20.0, lower_end_y + 4.0),
-            13.0,
-        ))
-        .add(text_middle(
-            "strip,",
-            (FIRST_GROUND_HOLE.0 + 20.0, lower_end_y + 19.0),
-            13.0,
-        ))
-        .add(text_middle(
-            "12 ways",
-            (FIRST_GROUND_HOLE.0 + 20.0, lower_end_y + 34.0),
-            13.0,
-        ))
-        .add(text_start(
-            "+5 V strip",
-            (46.0, FIRST_SUPPLY_HOLE.1 + PITCH * 6.0 + 4.0),
-            13.0,
-        ))
-        .add(text_start(
-            "6 ways",
-            (46.0, FIRST_SUPPLY_HOLE.1 + PITCH * 6.0 + 20.0),
-            13.0,
-        ))
-        .add(text_start(
-            "signal strip, 5 ways:",
-            (76.0, top + 16.0),
-            13.0,
-        ))
-        .add(text_start("3 is ground", (76.0, top + 32.0), 13.0))
 }

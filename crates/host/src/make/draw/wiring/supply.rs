@@ -66,126 +66,52 @@ fn ground_hole_of(part_name: &str) -> Point {
 /// All wires of the supply; `barrel_jack` is the centre of the board's barrel jack.
 pub fn wires(barrel_jack: Point) -> Vec<Wire> {
     let [plug_plus, plug_minus] = barrel_plug_terminals(barrel_jack);
-    let segment = |from: Point, to: Point| vec![from, to];
-    let thick_wire = |name: &str, path: Path, colour| Wire::new(name, path, colour, THICK_WIDTH);
-    let first_supply_hole = supply_hole(0);
-    let battery_hole = ground_hole_of("battery");
-    let converter_in_hole = ground_hole_of("converter-in");
-    let converter_out_hole = ground_hole_of("converter-out");
-    let plug_hole = ground_hole_of("round-plug");
-    let mut wires = vec![
-        thick_wire(
-            "battery-fuse",
-            segment((BATTERY_LEFT_X, PLUS_Y), (FUSE_CONTACTS_X[1], PLUS_Y)),
-            RED,
-        ),
-        thick_wire(
-            "fuse-switch",
-            segment((FUSE_CONTACTS_X[0], PLUS_Y), (SWITCH_CONTACTS_X[1], PLUS_Y)),
-            RED,
-        ),
-        thick_wire(
-            "switch-way",
-            segment(
-                (SWITCH_CONTACTS_X[0], PLUS_Y),
-                (SINGLE_WAY_HOLES_X[1], PLUS_Y),
-            ),
-            RED,
-        ),
-        thick_wire(
-            "way-converter",
-            segment(
-                (SINGLE_WAY_HOLES_X[0], CONVERTER_IN_PLUS_Y),
-                (CONVERTER_EDGES_X[1], CONVERTER_IN_PLUS_Y),
-            ),
-            RED,
-        ),
-        thick_wire(
-            "battery-ground",
-            vec![
-                (BATTERY_LEFT_X, BATTERY_MINUS_Y),
-                (546.0, BATTERY_MINUS_Y),
-                (546.0, battery_hole.1),
-                battery_hole,
-            ],
-            BLACK,
-        ),
-        thick_wire(
-            "converter-in-ground",
-            vec![
-                (CONVERTER_EDGES_X[1], CONVERTER_MINUS_Y),
-                (252.0, CONVERTER_MINUS_Y),
-                (252.0, converter_in_hole.1),
-                converter_in_hole,
-            ],
-            BLACK,
-        ),
-        thick_wire(
-            "converter-out-ground",
-            vec![
-                (CONVERTER_EDGES_X[0], CONVERTER_MINUS_Y),
-                (119.0, CONVERTER_MINUS_Y),
-                (119.0, converter_out_hole.1),
-                converter_out_hole,
-            ],
-            BLACK,
-        ),
-        thick_wire(
-            "converter-supply",
-            vec![
-                (CONVERTER_EDGES_X[0], PLUS_Y),
-                (106.0, PLUS_Y),
-                (106.0, first_supply_hole.1),
-                first_supply_hole,
-            ],
-            RED,
-        ),
-        Wire::new(
-            "round-plug-plus",
-            vec![
-                (SINGLE_WAY_HOLES_X[0], PLUS_Y + SINGLE_WAY_WIRE_OFFSET),
-                (268.0, PLUS_Y + SINGLE_WAY_WIRE_OFFSET),
-                (268.0, 138.0),
-                (BARREL_PLUG_WIRES_X[0], 138.0),
-                (BARREL_PLUG_WIRES_X[0], plug_plus.1),
-                plug_plus,
-            ],
-            RED,
-            THIN_WIDTH,
-        ),
-        Wire::new(
-            "round-plug-ground",
-            vec![
-                plug_hole,
-                (BARREL_PLUG_WIRES_X[1], plug_hole.1),
-                (BARREL_PLUG_WIRES_X[1], plug_minus.1),
-                plug_minus,
-            ],
-            BLACK,
-            THIN_WIDTH,
-        ),
-    ];
+    let [plus_x, minus_x] = BARREL_PLUG_WIRES_X;
+    let [fuse_left, fuse_right] = FUSE_CONTACTS_X;
+    let [switch_left, switch_right] = SWITCH_CONTACTS_X;
+    let [way_left, way_right] = SINGLE_WAY_HOLES_X;
+    let [converter_left, converter_right] = CONVERTER_EDGES_X;
+    let way_plus = (way_left, PLUS_Y + SINGLE_WAY_WIRE_OFFSET);
+    // A path that is vertical at `x`.
+    let path_by = |from: Point, x: f64, to: Point| vec![from, (x, from.1), (x, to.1), to];
+    let red_wire = |name: &str, path: Path| Wire::new(name, path, RED, THICK_WIDTH);
+    let red_line =
+        |name: &str, [from, to]: [f64; 2], y: f64| red_wire(name, vec![(from, y), (to, y)]);
+    let black_wire = |part: &str, path: Path, width: f64| {
+        Wire::new(format!("{part}-ground"), path, BLACK, width)
+    };
+    let ground_wire = |part: &str, from: Point, x: f64| {
+        black_wire(part, path_by(from, x, ground_hole_of(part)), THICK_WIDTH)
+    };
+    let plug_ground_path = path_by(ground_hole_of("round-plug"), minus_x, plug_minus);
+    let mut plug_plus_path = path_by(way_plus, 268.0, (plus_x, 138.0));
+    plug_plus_path.extend([(plus_x, plug_plus.1), plug_plus]);
     let [upper_lead, lower_lead] = capacitor_leads();
-    wires.push(thick_wire(
-        "capacitor-ground",
-        segment(upper_lead, ground_hole_of("capacitor")),
-        BLACK,
-    ));
-    wires.push(thick_wire(
-        "capacitor-supply",
-        segment(lower_lead, supply_hole(1)),
-        RED,
-    ));
-    for (number, (y, colour)) in
-        (1..).zip(BALANCE_CONTACTS_Y.into_iter().zip([RED, GREY_WIRE, BLACK]))
-    {
-        let path = segment((BATTERY_LEFT_X, y), (ALARM_RIGHT_X, y));
-        wires.push(Wire::new(
-            format!("balance-{number}"),
-            path,
-            colour,
-            LEG_WIDTH,
-        ));
+    let capacitor_ground_path = vec![upper_lead, ground_hole_of("capacitor")];
+    let converter_supply_path = path_by((converter_left, PLUS_Y), 106.0, supply_hole(0));
+    let mut wires = vec![
+        red_line("battery-fuse", [BATTERY_LEFT_X, fuse_right], PLUS_Y),
+        red_line("fuse-switch", [fuse_left, switch_right], PLUS_Y),
+        red_line("switch-way", [switch_left, way_right], PLUS_Y),
+        red_line(
+            "way-converter",
+            [way_left, converter_right],
+            CONVERTER_IN_PLUS_Y,
+        ),
+        ground_wire("battery", (BATTERY_LEFT_X, BATTERY_MINUS_Y), 546.0),
+        ground_wire("converter-in", (converter_right, CONVERTER_MINUS_Y), 252.0),
+        ground_wire("converter-out", (converter_left, CONVERTER_MINUS_Y), 119.0),
+        red_wire("converter-supply", converter_supply_path),
+        Wire::new("round-plug-plus", plug_plus_path, RED, THIN_WIDTH),
+        black_wire("round-plug", plug_ground_path, THIN_WIDTH),
+        black_wire("capacitor", capacitor_ground_path, THICK_WIDTH),
+        red_wire("capacitor-supply", vec![lower_lead, supply_hole(1)]),
+    ];
+    let contacts = BALANCE_CONTACTS_Y.into_iter().zip([RED, GREY_WIRE, BLACK]);
+    for (number, (y, colour)) in (1..).zip(contacts) {
+        let path = vec![(BATTERY_LEFT_X, y), (ALARM_RIGHT_X, y)];
+        let name = format!("balance-{number}");
+        wires.push(Wire::new(name, path, colour, LEG_WIDTH));
     }
     wires
 }
@@ -204,11 +130,8 @@ fn capacitor_leads() -> [Point; 2] {
 }
 
 fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
-    group.add(outlined(
-        rectangle(corner, size, fill).set("rx", 5),
-        DARK,
-        1.5,
-    ))
+    let case = rectangle(corner, size, fill).set("rx", 5);
+    group.add(outlined(case, DARK, 1.5))
 }
 
 /// Draws all parts of the supply; `barrel_jack` is the centre of the board's barrel jack.
@@ -218,24 +141,14 @@ pub fn draw(barrel_jack: Point) -> Group {
     group = draw_fuse_switch_and_way(group);
     group = draw_converter(group);
     let [upper_lead, lower_lead] = capacitor_leads();
-    group = draw_case(
-        group,
-        (CAPACITOR_X - 9.0, upper_lead.1 + 5.0),
-        (18.0, lower_lead.1 - upper_lead.1 - 10.0),
-        "#dddddd",
-    )
-    .add(rectangle(
-        (CAPACITOR_X - 9.0, upper_lead.1 + 5.0),
-        (18.0, 7.0),
-        DARK,
-    ))
-    .add(draw_terminal("capacitor-minus", upper_lead, DARK))
-    .add(draw_terminal("capacitor-plus", lower_lead, RED))
-    .add(text_start(
-        "1000 µF, 10 V",
-        (CAPACITOR_X + 8.0, upper_lead.1 - 6.0),
-        13.0,
-    ));
+    let corner = (CAPACITOR_X - 9.0, upper_lead.1 + 5.0);
+    let size = (18.0, lower_lead.1 - upper_lead.1 - 10.0);
+    let label_point = (CAPACITOR_X + 8.0, upper_lead.1 - 6.0);
+    group = draw_case(group, corner, size, "#dddddd")
+        .add(rectangle(corner, (18.0, 7.0), DARK))
+        .add(draw_terminal("capacitor-minus", upper_lead, DARK))
+        .add(draw_terminal("capacitor-plus", lower_lead, RED))
+        .add(text_start("1000 µF, 10 V", label_point, 13.0));
     for (label, point) in [
         ("0.5 mm\u{b2}", (300.0, 176.0)),
         ("0.25 mm\u{b2}", (140.0, 134.0)),
@@ -244,12 +157,9 @@ pub fn draw(barrel_jack: Point) -> Group {
         group = group.add(text_start(label, point, 12.0));
     }
     let [plus, minus] = barrel_plug_terminals(barrel_jack);
+    let tip_corner = (plus.0 + 34.0, barrel_jack.1 - 5.0);
     draw_case(group, (plus.0, plus.1 - 8.0), (34.0, 34.0), "#8f8f8f")
-        .add(rectangle(
-            (plus.0 + 34.0, barrel_jack.1 - 5.0),
-            (10.0, 10.0),
-            "#8f8f8f",
-        ))
+        .add(rectangle(tip_corner, (10.0, 10.0), "#8f8f8f"))
         .add(draw_terminal("round-plug-plus", plus, RED))
         .add(draw_terminal("round-plug-minus", minus, DARK))
         .add(text_start("barrel plug,", (44.0, plus.1 - 28.0), 13.0))
@@ -258,85 +168,54 @@ pub fn draw(barrel_jack: Point) -> Group {
 
 fn draw_battery(group: Group) -> Group {
     let mut group = draw_case(group, (BATTERY_LEFT_X, 18.0), (132.0, 114.0), "#f4efe2");
+    let cell_middle_x = CELLS_LEFT_X + 41.0;
     for (number, top) in [(2, 30.0), (1, 82.0)] {
+        let label = format!("cell {number}: 3.7 V");
         group = draw_case(group, (CELLS_LEFT_X, top), (82.0, 38.0), "white").add(text_middle(
-            &format!("cell {number}: 3.7 V"),
-            (CELLS_LEFT_X + 41.0, top + 23.0),
+            &label,
+            (cell_middle_x, top + 23.0),
             12.0,
         ));
     }
-    let add_line = |group: Group, from: Point, to: Point| group.add(line(from, to, DARK, 1.6));
-    group = add_line(group, (BATTERY_LEFT_X, PLUS_Y), (CELLS_LEFT_X, PLUS_Y));
-    group = add_line(
-        group,
-        (BATTERY_LEFT_X, BALANCE_CONTACTS_Y[0]),
-        (CELLS_LEFT_X, BALANCE_CONTACTS_Y[0]),
-    );
-    group = add_line(
-        group,
-        (CELLS_LEFT_X + 41.0, 68.0),
-        (CELLS_LEFT_X + 41.0, 82.0),
-    );
-    group = add_line(
-        group,
-        (BATTERY_LEFT_X, BALANCE_CONTACTS_Y[1]),
-        (CELLS_LEFT_X + 41.0, BALANCE_CONTACTS_Y[1]),
-    );
-    group = add_line(
-        group,
-        (BATTERY_LEFT_X, BALANCE_CONTACTS_Y[2]),
-        (CELLS_LEFT_X, BALANCE_CONTACTS_Y[2]),
-    );
-    group = add_line(
-        group,
-        (BATTERY_LEFT_X, BATTERY_MINUS_Y),
-        (CELLS_LEFT_X, BATTERY_MINUS_Y),
-    );
+    let line_to = |x: f64, y: f64| line((BATTERY_LEFT_X, y), (x, y), DARK, 1.6);
+    let cell_link = line((cell_middle_x, 68.0), (cell_middle_x, 82.0), DARK, 1.6);
+    group = group
+        .add(line_to(CELLS_LEFT_X, PLUS_Y))
+        .add(line_to(CELLS_LEFT_X, BALANCE_CONTACTS_Y[0]))
+        .add(cell_link)
+        .add(line_to(cell_middle_x, BALANCE_CONTACTS_Y[1]))
+        .add(line_to(CELLS_LEFT_X, BALANCE_CONTACTS_Y[2]))
+        .add(line_to(CELLS_LEFT_X, BATTERY_MINUS_Y));
     for (number, y) in (1..).zip(BALANCE_CONTACTS_Y) {
-        group = group.add(draw_terminal(
-            &format!("battery-balance-{number}"),
-            (BATTERY_LEFT_X, y),
-            DARK,
-        ));
+        let name = format!("battery-balance-{number}");
+        group = group.add(draw_terminal(&name, (BATTERY_LEFT_X, y), DARK));
     }
     // The plug that disconnects both wires.
     for y in [PLUS_Y, BATTERY_MINUS_Y] {
-        group = group.add(outlined(
-            rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808"),
-            DARK,
-            1.0,
-        ));
+        let plug = rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808");
+        group = group.add(outlined(plug, DARK, 1.0));
     }
+    let minus_point = (BATTERY_LEFT_X, BATTERY_MINUS_Y);
     group
         .add(draw_terminal("battery-plus", (BATTERY_LEFT_X, PLUS_Y), RED))
-        .add(draw_terminal(
-            "battery-minus",
-            (BATTERY_LEFT_X, BATTERY_MINUS_Y),
-            DARK,
-        ))
+        .add(draw_terminal("battery-minus", minus_point, DARK))
         .add(text_end("plug", (556.0, 24.0), 12.0))
         .add(text_end("battery, 7.4 V", (690.0, 147.0), 13.0))
 }
 
 fn draw_alarm(group: Group) -> Group {
+    let (label_x, note_x) = (ALARM_RIGHT_X - 84.0, ALARM_RIGHT_X + 26.0);
     let mut group = draw_case(group, (ALARM_RIGHT_X - 92.0, 58.0), (92.0, 38.0), "#e6eef7")
-        .add(text_start(
-            "low-voltage",
-            (ALARM_RIGHT_X - 84.0, 74.0),
-            13.0,
-        ))
-        .add(text_start("alarm", (ALARM_RIGHT_X - 84.0, 90.0), 13.0))
+        .add(text_start("low-voltage", (label_x, 74.0), 13.0))
+        .add(text_start("alarm", (label_x, 90.0), 13.0))
         .add(text_end(
             "balance plug, its own wires",
-            (ALARM_RIGHT_X + 26.0, 113.0),
+            (note_x, 113.0),
             12.0,
         ));
     for (number, y) in (1..).zip(BALANCE_CONTACTS_Y) {
-        group = group.add(draw_terminal(
-            &format!("alarm-{number}"),
-            (ALARM_RIGHT_X, y),
-            DARK,
-        ));
+        let name = format!("alarm-{number}");
+        group = group.add(draw_terminal(&name, (ALARM_RIGHT_X, y), DARK));
     }
     group
 }
@@ -356,34 +235,20 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
         (SWITCH_CONTACTS_X[0] + 16.0, PLUS_Y + 4.0),
         (SWITCH_CONTACTS_X[1] - 18.0, PLUS_Y - 8.0),
     ];
+    let [way_left, way_right] = SINGLE_WAY_HOLES_X.map(|x| (x, PLUS_Y));
     group = group
-        .add(line(
-            (SINGLE_WAY_HOLES_X[0], PLUS_Y),
-            (SINGLE_WAY_HOLES_X[1], PLUS_Y),
-            "#c9b26b",
-            9.0,
-        ))
-        .add(line(switch_lever[0], switch_lever[1], DARK, 2.5))
-        .add(text_middle(
-            "fuse",
-            (middle_of(FUSE_CONTACTS_X), 20.0),
-            13.0,
-        ))
-        .add(text_middle(
-            &format!("{FUSE_RATING_A} A"),
-            (middle_of(FUSE_CONTACTS_X), PLUS_Y + 5.0),
-            14.0,
-        ))
-        .add(text_middle(
-            &format!("switch, {MIN_SWITCH_RATING_A} A"),
-            (middle_of(SWITCH_CONTACTS_X), 20.0),
-            13.0,
-        ))
-        .add(text_middle(
-            "single way",
-            (middle_of(SINGLE_WAY_HOLES_X), 20.0),
-            13.0,
-        ));
+        .add(line(way_left, way_right, "#c9b26b", 9.0))
+        .add(line(switch_lever[0], switch_lever[1], DARK, 2.5));
+    let fuse_rating = format!("{FUSE_RATING_A} A");
+    let switch_label = format!("switch, {MIN_SWITCH_RATING_A} A");
+    for (label, ends, y, size) in [
+        ("fuse", FUSE_CONTACTS_X, 20.0, 13.0),
+        (&fuse_rating, FUSE_CONTACTS_X, PLUS_Y + 5.0, 14.0),
+        (&switch_label, SWITCH_CONTACTS_X, 20.0, 13.0),
+        ("single way", SINGLE_WAY_HOLES_X, 20.0, 13.0),
+    ] {
+        group = group.add(text_middle(label, (middle_of(ends), y), size));
+    }
     let ends = [
         ("fuse", FUSE_CONTACTS_X),
         ("switch", SWITCH_CONTACTS_X),
@@ -400,39 +265,28 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
 fn draw_converter(group: Group) -> Group {
     let [left, right] = CONVERTER_EDGES_X;
     let middle_x = (left + right) / 2.0;
-    draw_case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
+    let label_y = |y: f64| y + 5.0;
+    let (left_label_x, right_label_x) = (left + 8.0, right - 8.0);
+    let minus_label_y = label_y(CONVERTER_MINUS_Y);
+    let in_plus_label_point = (right_label_x, label_y(CONVERTER_IN_PLUS_Y));
+    let mut group = draw_case(group, (left, 20.0), (right - left, 102.0), "#e3f0e3")
         .add(text_middle("converter", (middle_x, 66.0), 14.0))
         .add(text_middle("to 5.0 V, 3 A", (middle_x, 84.0), 14.0))
-        .add(text_start("OUT+", (left + 8.0, PLUS_Y + 5.0), 12.0))
+        .add(text_start("OUT+", (left_label_x, label_y(PLUS_Y)), 12.0))
         .add(text_start(
             "OUT\u{2212}",
-            (left + 8.0, CONVERTER_MINUS_Y + 5.0),
+            (left_label_x, minus_label_y),
             12.0,
         ))
-        .add(text_end(
-            "IN+",
-            (right - 8.0, CONVERTER_IN_PLUS_Y + 5.0),
-            12.0,
-        ))
-        .add(text_end(
-            "IN\u{2212}",
-            (right - 8.0, CONVERTER_MINUS_Y + 5.0),
-            12.0,
-        ))
-        .add(draw_terminal("converter-out-plus", (left, PLUS_Y), RED))
-        .add(draw_terminal(
-            "converter-out-minus",
-            (left, CONVERTER_MINUS_Y),
-            DARK,
-        ))
-        .add(draw_terminal(
-            "converter-in-plus",
-            (right, CONVERTER_IN_PLUS_Y),
-            RED,
-        ))
-        .add(draw_terminal(
-            "converter-in-minus",
-            (right, CONVERTER_MINUS_Y),
-            DARK,
-        ))
+        .add(text_end("IN+", in_plus_label_point, 12.0))
+        .add(text_end("IN\u{2212}", (right_label_x, minus_label_y), 12.0));
+    for (name, point, colour) in [
+        ("converter-out-plus", (left, PLUS_Y), RED),
+        ("converter-out-minus", (left, CONVERTER_MINUS_Y), DARK),
+        ("converter-in-plus", (right, CONVERTER_IN_PLUS_Y), RED),
+        ("converter-in-minus", (right, CONVERTER_MINUS_Y), DARK),
+    ] {
+        group = group.add(draw_terminal(name, point, colour));
+    }
+    group
 }

@@ -3,10 +3,10 @@
 //! Wires have horizontal and vertical parts only. Each is drawn with a white edge, which leaves a gap in the
 //! earlier wires that it crosses. Without the gap a crossing would look like a joint.
 
-use svg::node::element::{Circle, Group};
+use svg::node::element::{Circle, Group, Rectangle};
 
 use crate::make::draw::route::Path;
-use crate::shared::ink::{circle, curve, outlined};
+use crate::shared::ink::{DARK, GREY, circle, curve, outlined, rectangle, text_start};
 
 /// The colour of black wires.
 pub const BLACK: &str = "#1b1b1b";
@@ -45,6 +45,22 @@ impl Wire {
         let wire = curve(&self.path, self.colour, self.width);
         Group::new().add(gap).add(wire.set("id", self.name.clone()))
     }
+}
+
+/// Draws the frame and the title of a panel with an option, with its upper edge at y = `top`.
+pub fn draw_option_panel(top: f64, height: f64, title: &str) -> Group {
+    let frame = rectangle((16.0, top), (668.0, height - 12.0), "#fbfbf4").set("rx", 8);
+    let title = text_start(title, (30.0, top + 26.0), 15.0);
+    Group::new()
+        .add(outlined(frame, GREY, 1.5).set("stroke-dasharray", "7 5"))
+        .add(title.set("font-weight", "bold"))
+}
+
+/// Draws the body of a resistor by its centre and its size.
+pub fn draw_resistor((x, y): (f64, f64), (width, height): (f64, f64)) -> Rectangle {
+    let corner = (x - width / 2.0, y - height / 2.0);
+    let body = rectangle(corner, (width, height), "#f3e3c3").set("rx", 2);
+    outlined(body, DARK, 1.5)
 }
 
 /// Draws a terminal, at which a wire ends.
