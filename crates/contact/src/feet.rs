@@ -90,62 +90,55 @@ impl Body {
     }
 }
 
+/// The feet of the paper's robot.
+#[cfg(test)]
+pub(crate) const PAPER_FEET: Feet = Feet {
+    hip_forward: 55.0,
+    hip_side: [35.0; 2],
+    mount_angle: 0.0,
+    reach: 45.0,
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assert_near;
 
     #[test]
     fn a_foot_is_one_crank_length_from_its_hip_in_the_direction_of_the_sweep() {
-        let feet = Feet {
-            hip_forward: 55.0,
-            hip_side: [35.0; 2],
-            mount_angle: 0.0,
-            reach: 45.0,
-        };
-        assert_eq!(
-            feet.positions([0.0; 4]),
-            [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]]
-        );
+        let feet = PAPER_FEET;
+        let expected_positions = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
+        assert_eq!(feet.positions([0.0; 4]), expected_positions);
         let forward_feet = feet.positions([90.0; 4]);
         let expected_positions = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
         for (foot, expected_point) in forward_feet.into_iter().zip(expected_positions) {
-            assert!(
-                (foot[0] - expected_point[0]).hypot(foot[1] - expected_point[1]) < 1e-12,
-                "{foot:?}"
-            );
+            let error = (foot[0] - expected_point[0]).hypot(foot[1] - expected_point[1]);
+            assert!(error < 1e-12, "{foot:?}");
         }
         let splayed_feet = Feet {
             mount_angle: 90.0,
             ..feet
-        }
-        .positions([0.0; 4]);
-        assert!(
-            (splayed_feet[0][0] - 100.0).abs() < 1e-12 && (splayed_feet[2][0] + 100.0).abs() < 1e-9
-        );
+        };
+        let positions = splayed_feet.positions([0.0; 4]);
+        assert_near(positions[0][0], 100.0, 1e-12);
+        assert_near(positions[2][0], -100.0, 1e-9);
     }
 
     #[test]
     fn sweep_derivatives_are_the_difference_quotients_of_the_positions() {
         let feet = Feet {
-            hip_forward: 55.0,
-            hip_side: [35.0; 2],
             mount_angle: 12.0,
-            reach: 45.0,
+            ..PAPER_FEET
         };
         let sweeps = [10.0, -5.0, 20.0, -15.0];
         let step_deg = 1e-5;
-        let (positions, stepped_positions) = (
-            feet.positions(sweeps),
-            feet.positions(sweeps.map(|s| s + step_deg)),
-        );
+        let [positions, stepped_positions] =
+            [0.0, step_deg].map(|step| feet.positions(sweeps.map(|sweep| sweep + step)));
         for (i, derivative) in feet.sweep_derivatives(sweeps).into_iter().enumerate() {
             for axis in 0..2 {
                 let difference_quotient =
                     (stepped_positions[i][axis] - positions[i][axis]) / step_deg.to_radians();
-                assert!(
-                    (derivative[axis] - difference_quotient).abs() < 1e-3,
-                    "{derivative:?}"
-                );
+                assert_near(derivative[axis], difference_quotient, 1e-3);
             }
         }
     }

@@ -325,6 +325,7 @@ impl LagEnergy {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assert_near;
 
     const STOP_TORQUE: f64 = 400.0;
 
@@ -346,15 +347,9 @@ mod tests {
             let step = 1e-6;
             let (lower, upper) = (expand_at(lag - step), expand_at(lag + step));
             let energy_slope = (upper.energy - lower.energy) / (2.0 * step);
-            assert!(
-                (energy_slope - torque).abs() < 1e-4 * (1.0 + torque.abs()),
-                "{lag} {energy_slope} {torque}"
-            );
+            assert_near(energy_slope, torque, 1e-4 * (1.0 + torque.abs()));
             let torque_slope = (upper.torque - lower.torque) / (2.0 * step);
-            assert!(
-                (torque_slope - stiffness).abs() < 1e-3 * (1.0 + stiffness.abs()),
-                "{lag} {torque_slope} {stiffness}"
-            );
+            assert_near(torque_slope, stiffness, 1e-3 * (1.0 + stiffness.abs()));
         }
     }
 
@@ -362,23 +357,20 @@ mod tests {
     fn torque_and_stiffness_are_the_derivatives_of_the_energy() {
         let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
         for play in [0.0, 0.02] {
-            let lag_energy_with = |lower, upper| LagEnergy {
-                play,
-                stop_torque: STOP_TORQUE,
-                lower_resistance: lower,
-                upper_resistance: upper,
-                motor: None,
-            };
             let strut_resistance = Resistance::strut(triangle_at(70.0), 8.0, 0.7, 5.0);
-            for resistances in [
+            for [lower_resistance, upper_resistance] in [
                 [Resistance::Stop; 2],
                 [Resistance::Stop, strut_resistance],
                 [strut_resistance; 2],
             ] {
-                assert_derivatives(
-                    lag_energy_with(resistances[0], resistances[1]),
-                    lags.clone(),
-                );
+                let lag_energy = LagEnergy {
+                    play,
+                    stop_torque: STOP_TORQUE,
+                    lower_resistance,
+                    upper_resistance,
+                    motor: None,
+                };
+                assert_derivatives(lag_energy, lags.clone());
             }
         }
     }
@@ -398,28 +390,25 @@ mod tests {
         }
         let (growth, lever_arm, _) = triangle.growth_and_derivatives(0.01);
         let torque = (8.0 + 0.7 * growth) * lever_arm;
-        assert!((lag_energy.expand(0.11, 0.0).torque - torque).abs() < 1e-9);
+        assert_near(lag_energy.expand(0.11, 0.0).torque, torque, 1e-9);
         assert_eq!(lag_energy.expand(-0.11, 0.0).torque, -STOP_TORQUE);
-        assert_eq!(
-            lag_energy.stops(),
-            [-0.1, 0.1 + triangle.lag_at_growth(5.0)]
-        );
-        assert!((lag_energy.spring_torque(0.11) - torque).abs() < 1e-9);
+        let stops = [-0.1, 0.1 + triangle.lag_at_growth(5.0)];
+        assert_eq!(lag_energy.stops(), stops);
+        assert_near(lag_energy.spring_torque(0.11), torque, 1e-9);
         assert_eq!(lag_energy.spring_torque(-0.2), 0.0, "a stop does not pull");
     }
 
     #[test]
     fn a_strut_is_the_third_side_of_a_triangle() {
         let triangle = triangle_at(70.0);
-        assert!(
-            (triangle.unlagged_length - 30.2).abs() < 1e-9,
-            "parallel arms"
-        );
+        // The arms are parallel.
+        assert_near(triangle.unlagged_length, 30.2, 1e-9);
         // The component of the arm perpendicular to the strut.
-        assert!((triangle.lever_arm().abs() - 22.0 * 70f64.to_radians().sin()).abs() < 1e-9);
+        let lever_arm = triangle.lever_arm().abs();
+        assert_near(lever_arm, 22.0 * 70f64.to_radians().sin(), 1e-9);
         let end_lag = triangle.lag_at_growth(5.0);
         let (growth, ..) = triangle.growth_and_derivatives(end_lag);
-        assert!((growth - 5.0).abs() < 1e-9, "{growth}");
+        assert_near(growth, 5.0, 1e-9);
         assert_eq!(triangle.lag_at_growth(50.0), f64::INFINITY);
     }
 
@@ -431,15 +420,12 @@ mod tests {
             let (growth, ..) = triangle.growth_and_derivatives(lag);
             let (_, lever_arm, lever_arm_slope) = triangle.growth_and_derivatives(0.0);
             let expected_growth = lever_arm * lag + lever_arm_slope * lag * lag / 2.0;
-            assert!(
-                (growth / expected_growth - 1.0).abs() < 1e-11,
-                "{lag} {growth}"
-            );
+            assert_near(growth / expected_growth, 1.0, 1e-11);
         }
         // Far below its kink the smoothed ramp is eps^2 / (4 |x|), even if that is many orders of
         // magnitude less than |x|.
         let ramp = smoothed_ramp(-0.5, 1e-9);
-        assert!((ramp.energy / 5e-19 - 1.0).abs() < 1e-9, "{ramp:?}");
-        assert!((ramp.torque / 1e-18 - 1.0).abs() < 1e-9, "{ramp:?}");
+        assert_near(ramp.energy / 5e-19, 1.0, 1e-9);
+        assert_near(ramp.torque / 1e-18, 1.0, 1e-9);
     }
 }

@@ -69,3 +69,11 @@ pub use stance::Stance;
 pub use strut::{SLOT_LENGTH, Strut};
 pub use travel::{Prediction, Travel};
 pub use walker::{Slip, Walker};
+
+/// Fails if a value is not near the expected one.
+#[cfg(test)]
+#[track_caller]
+fn assert_near(value: f64, expected: f64, max_error: f64) {
+    let is_near = (value - expected).abs() < max_error;
+    assert!(is_near, "{value} is not near {expected}");
+}

@@ -102,8 +102,9 @@ impl Motors {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assert_near;
     use crate::drive::{Drive, DriveKind};
-    use crate::feet::{Body, Feet};
+    use crate::feet::{Body, PAPER_FEET};
     use crate::ground::Ground;
     use crate::stance::Stance;
     use crate::walker::Walker;
@@ -127,12 +128,7 @@ mod tests {
     /// its servos.
     fn ground_with(mass: f64, friction_coefficient: f64) -> Ground {
         Ground {
-            feet: Feet {
-                hip_forward: 55.0,
-                hip_side: [35.0; 2],
-                mount_angle: 0.0,
-                reach: 45.0,
-            },
+            feet: PAPER_FEET,
             body: Body {
                 mass,
                 ..Body::DEFAULT
@@ -172,10 +168,7 @@ mod tests {
             let exact_angle =
                 rate * (seconds - spin_up_time * (1.0 - (-seconds / spin_up_time).exp()));
             for angle in walker.servo_sweeps() {
-                assert!(
-                    (angle / exact_angle - 1.0).abs() < 0.12,
-                    "{seconds} {angle} {exact_angle}"
-                );
+                assert_near(angle / exact_angle, 1.0, 0.12);
             }
         }
     }
@@ -189,8 +182,7 @@ mod tests {
             ..SG90
         };
         let mut walker = Walker::new(heavy_ground, [0.0; 4]);
-        let targets =
-            [Some(8.0), Some(8.0), Some(-8.0), Some(-8.0)].map(|target| target.map(|x| 1e3 * x));
+        let targets = [8e3, 8e3, -8e3, -8e3].map(Some);
         let mut mean_angle_after_20_ms = || {
             walker.drive(targets, 0.02, &motors_with(quick_motor, JOINTS));
             walker.servo_sweeps().map(f64::abs).iter().sum::<f64>() / 4.0
@@ -199,10 +191,7 @@ mod tests {
         let mean_rate = (-mean_angle_after_20_ms() + mean_angle_after_20_ms()) / 0.02;
         let pad_torque = heavy_ground.mean_pad_friction() * heavy_ground.feet.reach;
         let expected_rate = SG90.no_load_speed * (1.0 - pad_torque / SG90.stall_torque);
-        assert!(
-            (mean_rate / expected_rate - 1.0).abs() < 0.1,
-            "{mean_rate} {expected_rate}"
-        );
+        assert_near(mean_rate / expected_rate, 1.0, 0.1);
     }
 
     #[test]
@@ -214,10 +203,7 @@ mod tests {
         assert!(leg_travel > 15.0, "{leg_travel}");
         let share = 4.0 * ice.body.leg_mass() / ice.body.mass;
         let body_travel = walker.place().travel().forward;
-        assert!(
-            (body_travel + share * leg_travel).abs() < 0.02,
-            "{body_travel} {leg_travel}"
-        );
+        assert_near(body_travel, -share * leg_travel, 0.02);
     }
 
     #[test]
@@ -232,8 +218,9 @@ mod tests {
         };
         let rate_ratio =
             angle_after(joints_with_pin_torque(SG90.stall_torque / 2.0)) / angle_after(JOINTS);
-        assert!((rate_ratio - 0.5).abs() < 0.03, "{rate_ratio}");
-        assert!(angle_after(joints_with_pin_torque(1.01 * SG90.stall_torque)).abs() < 1e-6);
+        assert_near(rate_ratio, 0.5, 0.03);
+        let held_angle = angle_after(joints_with_pin_torque(1.01 * SG90.stall_torque));
+        assert_near(held_angle, 0.0, 1e-6);
     }
 
     #[test]
@@ -245,28 +232,20 @@ mod tests {
         };
         let angles_after = |directions: [f64; 4], joints| {
             let mut walker = Walker::new(light_ground, [0.0; 4]);
-            walker.drive(
-                directions.map(|direction| Some(1000.0 * direction)),
-                0.04,
-                &motors_with(SG90, joints),
-            );
+            let targets = directions.map(|direction| Some(1000.0 * direction));
+            walker.drive(targets, 0.04, &motors_with(SG90, joints));
             walker.servo_sweeps()
         };
         let first_leg_only = [1.0, 0.0, 0.0, 0.0];
         let [slow, fast] = [joints, JOINTS].map(|joints| angles_after(first_leg_only, joints)[0]);
         let lever_arm = JOINTS.slider_lever_arms([0.0; 4])[0].abs();
-        assert!((lever_arm - 19.8).abs() < 1e-9, "{lever_arm}");
+        assert_near(lever_arm, 19.8, 1e-9);
         let rate_share = 1.0 - 3.0 * lever_arm / SG90.stall_torque;
-        assert!(
-            (slow / fast - rate_share).abs() < 0.06,
-            "{slow} {fast} {rate_share}"
-        );
+        assert_near(slow / fast, rate_share, 0.06);
         // Both feet of a side swing forward: the slider's arms turn alike, and its length hardly changes.
         let [slow, fast] = [joints, JOINTS].map(|joints| angles_after([1.0; 4], joints)[0]);
-        assert!(
-            1.0 - slow / fast < 0.4 * (1.0 - rate_share),
-            "{slow} {fast}"
-        );
+        let loss = 1.0 - slow / fast;
+        assert!(loss < 0.4 * (1.0 - rate_share), "{slow} {fast}");
     }
 
     #[test]
@@ -276,30 +255,26 @@ mod tests {
             half_dead_band: 0.5,
             ..SG90
         };
-        let angle = turn_servos(
-            light_ground,
-            &motors_with(dead_band_motor, JOINTS),
-            10.0,
-            1.0,
-        )
-        .servo_sweeps()[0];
-        assert!((9.49..10.51).contains(&angle), "{angle}");
-        let angle =
-            turn_servos(light_ground, &motors_with(SG90, JOINTS), 10.0, 1.0).servo_sweeps()[0];
-        assert!((angle - 10.0).abs() < 0.02, "{angle}");
+        for (motor, max_error) in [(dead_band_motor, 0.51), (SG90, 0.02)] {
+            let motors = motors_with(motor, JOINTS);
+            let [angle, ..] = turn_servos(light_ground, &motors, 10.0, 1.0).servo_sweeps();
+            assert_near(angle, 10.0, max_error);
+        }
     }
 
     #[test]
     fn the_line_share_is_one_on_the_torque_speed_line_and_greater_at_a_lower_supply() {
         let motor_at_low_supply = SG90.at_supply(0.875);
         for (torque, rate, share) in [(176.5, 0.0, 1.0), (0.0, 500.0, 1.0), (88.25, 250.0, 1.0)] {
-            assert!((SG90.line_share(torque, rate) - share).abs() < 1e-12);
-            assert!((motor_at_low_supply.line_share(torque, rate) - share / 0.875).abs() < 1e-12);
+            assert_near(SG90.line_share(torque, rate), share, 1e-12);
+            assert_near(
+                motor_at_low_supply.line_share(torque, rate),
+                share / 0.875,
+                1e-12,
+            );
         }
-        assert!(
-            (motor_at_low_supply.inertia() - SG90.inertia()).abs() < 1e-12,
-            "the rotor's inertia does not depend on the supply"
-        );
+        // The rotor's inertia does not depend on the supply.
+        assert_near(motor_at_low_supply.inertia(), SG90.inertia(), 1e-12);
     }
 
     #[test]
@@ -311,28 +286,19 @@ mod tests {
             },
             ..ground_with(400.0, 0.7)
         };
-        let mut walker = Walker::new(ground_with_play, [0.0; 4]);
-        walker.drive(
-            [Some(10.0), Some(0.0), Some(0.0), Some(0.0)],
-            1.0,
-            &motors_with(SG90, JOINTS),
-        );
-        let (servo, lag) = (walker.servo_sweeps()[0], walker.lags()[0]);
         // At its target the servo does not pull, and the leg may be anywhere within its play.
-        assert!(
-            (servo - 10.0).abs() < 1e-6 && lag.abs() < 1.0,
-            "{servo} {lag}"
-        );
+        let turn_first_servo = |target: f64, seconds: f64| {
+            let mut walker = Walker::new(ground_with_play, [0.0; 4]);
+            let targets = [target, 0.0, 0.0, 0.0].map(Some);
+            walker.drive(targets, seconds, &motors_with(SG90, JOINTS));
+            [walker.servo_sweeps(), walker.lags(), walker.leg_sweeps()].map(|angles| angles[0])
+        };
+        let [servo, lag, _] = turn_first_servo(10.0, 1.0);
+        assert_near(servo, 10.0, 1e-6);
+        assert!(lag.abs() < 1.0, "{lag}");
         // While the servo turns, the leg lags behind it by the play.
-        let mut walker = Walker::new(ground_with_play, [0.0; 4]);
-        walker.drive(
-            [Some(90.0), Some(0.0), Some(0.0), Some(0.0)],
-            0.1,
-            &motors_with(SG90, JOINTS),
-        );
-        assert!((walker.lags()[0] - 1.0).abs() < 1e-3, "{:?}", walker.lags());
-        assert!(
-            (walker.leg_sweeps()[0] - (walker.servo_sweeps()[0] - walker.lags()[0])).abs() < 1e-12
-        );
+        let [servo, lag, leg] = turn_first_servo(90.0, 0.1);
+        assert_near(lag, 1.0, 1e-3);
+        assert_near(leg, servo - lag, 1e-12);
     }
 }

@@ -191,6 +191,7 @@ const MAX_ITERATIONS: usize = 60;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assert_near;
 
     #[test]
     fn torque_and_stiffness_are_the_derivatives_of_the_energy() {
@@ -215,15 +216,9 @@ mod tests {
                 torque, stiffness, ..
             } = expand_at(lag);
             let energy_slope = (upper.energy - lower.energy) / 2e-6;
-            assert!(
-                (energy_slope - torque).abs() < 1e-3 * torque.abs().max(1.0),
-                "{lag}"
-            );
+            assert_near(energy_slope, torque, 1e-3 * torque.abs().max(1.0));
             let torque_slope = (upper.torque - lower.torque) / 2e-6;
-            assert!(
-                (torque_slope / stiffness - 1.0).abs() < 1e-2,
-                "{lag} {torque_slope} {stiffness}"
-            );
+            assert_near(torque_slope / stiffness, 1.0, 1e-2);
         }
     }
 }

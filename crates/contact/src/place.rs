@@ -79,9 +79,10 @@ impl Place {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assert_near;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    fn assert_at(place: Place, forward: f64, left: f64, turn: f64) {
+    fn assert_at(place: Place, [forward, left, turn]: [f64; 3]) {
         let travel = place.travel();
         let error = (travel.forward - forward).hypot(travel.left - left);
         assert!(
@@ -92,76 +93,40 @@ mod tests {
 
     #[test]
     fn a_twist_moves_the_body_along_its_own_axes() {
-        assert_at(
-            Place::START.moved_by_twist([10.0, 0.0, 0.0]),
-            10.0,
-            0.0,
-            0.0,
-        );
-        assert_at(
-            Place::START.moved_by_twist([0.0, 10.0, 0.0]),
-            0.0,
-            10.0,
-            0.0,
-        );
-        // After a quarter turn to the left, the body's forward axis points left and its left axis back.
         let turned_place = Place::START.moved_by_twist([0.0, 0.0, FRAC_PI_2]);
-        assert_at(
-            turned_place.moved_by_twist([10.0, 0.0, 0.0]),
-            0.0,
-            10.0,
-            90.0,
-        );
-        assert_at(
-            turned_place.moved_by_twist([0.0, 10.0, 0.0]),
-            -10.0,
-            0.0,
-            90.0,
-        );
+        for (start, twist, expected) in [
+            (Place::START, [10.0, 0.0, 0.0], [10.0, 0.0, 0.0]),
+            (Place::START, [0.0, 10.0, 0.0], [0.0, 10.0, 0.0]),
+            // After a quarter turn to the left, the body's forward axis points left and its left axis back.
+            (turned_place, [10.0, 0.0, 0.0], [0.0, 10.0, 90.0]),
+            (turned_place, [0.0, 10.0, 0.0], [-10.0, 0.0, 90.0]),
+        ] {
+            assert_at(start.moved_by_twist(twist), expected);
+        }
     }
 
     #[test]
     fn a_body_that_turns_as_it_moves_follows_a_circle() {
         // A quarter circle and a half circle, both to the left, of radius 10.
-        assert_at(
-            Place::START.moved_by_twist([10.0 * FRAC_PI_2, 0.0, FRAC_PI_2]),
-            10.0,
-            10.0,
-            90.0,
-        );
-        assert_at(
-            Place::START.moved_by_twist([10.0 * PI, 0.0, PI]),
-            0.0,
-            20.0,
-            180.0,
-        );
+        for (turn, expected) in [(FRAC_PI_2, [10.0, 10.0, 90.0]), (PI, [0.0, 20.0, 180.0])] {
+            let place = Place::START.moved_by_twist([10.0 * turn, 0.0, turn]);
+            assert_at(place, expected);
+        }
     }
 
     #[test]
     fn travel_in_the_bodys_axes_does_not_depend_on_the_starting_place() {
         let start = Place::START.moved_by_twist([3.0, 4.0, FRAC_PI_2]);
         let twist = [10.0, -2.0, 0.3];
-        let travel = start.moved_by_twist(twist).travel_from(start);
+        let end = start.moved_by_twist(twist);
+        let travel = end.travel_from(start);
         let expected = Place::START.moved_by_twist(twist).travel();
-        assert!(
-            (travel.forward - expected.forward).abs() < 1e-12
-                && (travel.left - expected.left).abs() < 1e-12
-        );
-        assert!((travel.turn - expected.turn).abs() < 1e-12);
-        assert!(
-            start
-                .moved_by_travel(travel)
-                .travel_from(start.moved_by_twist(twist))
-                .forward
-                .abs()
-                < 1e-12
-        );
-        let after_travel = start.moved_by_travel(travel).travel();
-        let after_twist = start.moved_by_twist(twist).travel();
-        assert!(
-            (after_travel.left - after_twist.left).hypot(after_travel.turn - after_twist.turn)
-                < 1e-12
-        );
+        assert_near(travel.forward, expected.forward, 1e-12);
+        assert_near(travel.left, expected.left, 1e-12);
+        assert_near(travel.turn, expected.turn, 1e-12);
+        let error = start.moved_by_travel(travel).travel_from(end);
+        assert_near(error.forward, 0.0, 1e-12);
+        assert_near(error.left.hypot(error.turn), 0.0, 1e-12);
     }
 
     #[test]
@@ -172,6 +137,7 @@ mod tests {
             heading: FRAC_PI_2,
         };
         let [forward, left] = place.to_floor([10.0, 3.0]);
-        assert!((forward + 2.0).abs() < 1e-12 && (left - 12.0).abs() < 1e-12);
+        assert_near(forward, -2.0, 1e-12);
+        assert_near(left, 12.0, 1e-12);
     }
 }

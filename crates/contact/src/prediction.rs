@@ -139,19 +139,15 @@ impl Ground {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assert_near;
     use crate::drive::Drive;
-    use crate::feet::{Body, Feet};
+    use crate::feet::{Body, PAPER_FEET};
     use crate::ground::DEFAULT_FRICTION;
     use crate::stance::Stance;
     use std::f64::consts::PI;
 
     const GROUND: Ground = Ground {
-        feet: Feet {
-            hip_forward: 55.0,
-            hip_side: [35.0; 2],
-            mount_angle: 0.0,
-            reach: 45.0,
-        },
+        feet: PAPER_FEET,
         friction_ratio: 1.0,
         body: Body::DEFAULT,
         friction_coefficient: DEFAULT_FRICTION,
@@ -169,10 +165,9 @@ mod tests {
     /// A wave that goes backward at constant speed for the fraction `duty` of the cycle, then forward.
     fn stroke_wave(duty: f64) -> impl Fn(f64) -> f64 {
         move |phase| {
-            20.0 * if phase < duty {
-                1.0 - 2.0 * phase / duty
-            } else {
-                2.0 * (phase - duty) / (1.0 - duty) - 1.0
+            20.0 * match phase < duty {
+                true => 1.0 - 2.0 * phase / duty,
+                false => 2.0 * (phase - duty) / (1.0 - duty) - 1.0,
             }
         }
     }
@@ -187,10 +182,8 @@ mod tests {
     #[test]
     fn with_three_feet_against_one_the_movement_is_decided() {
         let prediction = GROUND.predict(cycle_of(ONE_BY_ONE_STARTS, stroke_wave(0.75)));
-        assert!(
-            prediction.is_decided() && prediction.forward > Some(25.0),
-            "{prediction:?}"
-        );
+        let is_forward = prediction.forward > Some(25.0);
+        assert!(prediction.is_decided() && is_forward, "{prediction:?}");
     }
 
     #[test]
@@ -204,20 +197,15 @@ mod tests {
         assert_eq!(GROUND.predict([]), NO_MOVEMENT);
         let prediction = GROUND.predict([[20.0; 4], [-20.0; 4]]);
         let forward = prediction.forward.expect("the distance ahead is decided");
-        assert!(
-            prediction.is_decided() && (forward - 90.0 * 20f64.to_radians().sin()).abs() < 1e-3
-        );
+        assert!(prediction.is_decided());
+        assert_near(forward, 90.0 * 20f64.to_radians().sin(), 1e-3);
     }
 
     #[test]
     fn with_two_feet_against_two_the_distance_ahead_is_undecided() {
         for duty in [0.5, 0.75] {
-            assert_eq!(
-                GROUND
-                    .predict(cycle_of(DIAGONAL_STARTS, stroke_wave(duty)))
-                    .forward,
-                None
-            );
+            let prediction = GROUND.predict(cycle_of(DIAGONAL_STARTS, stroke_wave(duty)));
+            assert_eq!(prediction.forward, None);
         }
         for starts in [DIAGONAL_STARTS, ONE_BY_ONE_STARTS] {
             assert_eq!(GROUND.predict(cycle_of(starts, sine_wave)).forward, None);
@@ -231,11 +219,8 @@ mod tests {
     #[test]
     fn a_tie_over_less_than_the_tolerance_leaves_the_movement_decided() {
         let shrink_sweeps = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
-        let prediction = GROUND.predict(
-            cycle_of(DIAGONAL_STARTS, sine_wave)
-                .into_iter()
-                .map(shrink_sweeps),
-        );
+        let cycle = cycle_of(DIAGONAL_STARTS, sine_wave).into_iter();
+        let prediction = GROUND.predict(cycle.map(shrink_sweeps));
         assert!(prediction.is_decided(), "{prediction:?}");
     }
 }

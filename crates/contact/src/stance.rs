@@ -119,6 +119,14 @@ fn compute_loads(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assert_near;
+
+    #[track_caller]
+    fn assert_all_near(loads: [f64; 4], expected: [f64; 4], max_error: f64) {
+        for (load, expected) in loads.into_iter().zip(expected) {
+            assert_near(load, expected, max_error);
+        }
+    }
 
     const RECTANGLE: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
     const SWUNG_FEET: [Point; 4] = [[67.0, 78.0], [48.0, -79.0], [-60.0, -80.0], [-51.0, 77.0]];
@@ -166,26 +174,16 @@ mod tests {
     fn the_loads_balance_the_body_and_equal_those_found_by_iteration() {
         for centre in [[0.0, 0.0], [6.0, -4.0], [-11.0, 9.0]] {
             for twist in [0.0, 0.3, -0.6, 1.0, 3.0] {
-                let loads = stance_with_twist(twist)
-                    .load_shares(&body_with_mass_centre(centre), SWUNG_FEET);
+                let (stance, body) = (stance_with_twist(twist), body_with_mass_centre(centre));
+                let loads = stance.load_shares(&body, SWUNG_FEET);
                 let sum_of = |arm: fn(Point) -> f64| -> f64 {
                     let pairs = loads.iter().zip(SWUNG_FEET);
                     pairs.map(|(load, foot)| load * arm(foot)).sum()
                 };
-                assert!((sum_of(|_| 1.0) - 4.0).abs() < 1e-9);
-                assert!((sum_of(|foot| foot[0]) - 4.0 * centre[0]).abs() < 1e-6);
-                assert!((sum_of(|foot| foot[1]) - 4.0 * centre[1]).abs() < 1e-6);
-                let iterated_loads = loads_by_iteration(
-                    &stance_with_twist(twist),
-                    &body_with_mass_centre(centre),
-                    SWUNG_FEET,
-                );
-                for (load, iterated_load) in loads.into_iter().zip(iterated_loads) {
-                    assert!(
-                        (load - iterated_load).abs() < 1e-3,
-                        "{twist} {loads:?} {iterated_loads:?}"
-                    );
-                }
+                assert_near(sum_of(|_| 1.0), 4.0, 1e-9);
+                assert_near(sum_of(|foot| foot[0]), 4.0 * centre[0], 1e-6);
+                assert_near(sum_of(|foot| foot[1]), 4.0 * centre[1], 1e-6);
+                assert_all_near(loads, loads_by_iteration(&stance, &body, SWUNG_FEET), 1e-3);
             }
         }
     }
@@ -194,29 +192,23 @@ mod tests {
     fn feet_nearer_to_the_centre_of_mass_carry_more() {
         // The centre of mass is halfway to the front feet, so each of these carries 1.5 times the mean.
         let loads = Stance::LEVEL.load_shares(&body_with_mass_centre([27.5, 0.0]), RECTANGLE);
-        for (load, expected) in loads.into_iter().zip([1.5, 1.5, 0.5, 0.5]) {
-            assert!((load - expected).abs() < 1e-9, "{loads:?}");
-        }
-        for load in Stance::LEVEL.load_shares(&Body::DEFAULT, RECTANGLE) {
-            assert!((load - 1.0).abs() < 1e-9);
-        }
+        assert_all_near(loads, [1.5, 1.5, 0.5, 0.5], 1e-9);
+        let loads = Stance::LEVEL.load_shares(&Body::DEFAULT, RECTANGLE);
+        assert_all_near(loads, [1.0; 4], 1e-9);
     }
 
     #[test]
     fn a_foot_that_is_too_long_and_the_one_across_from_it_carry_more() {
         // 2 N/mm times 0.6 mm is 1.2 N, of which each foot on the diagonal bears a quarter.
         let stance = stance_with_twist(0.6);
-        assert!((stance.diagonal_load() - 0.3).abs() < 1e-12);
+        assert_near(stance.diagonal_load(), 0.3, 1e-12);
         let share = 0.3 / Body::DEFAULT.mean_load();
         let loads = stance.load_shares(&Body::DEFAULT, RECTANGLE);
-        for (load, sign) in loads.into_iter().zip([1.0, -1.0, 1.0, -1.0]) {
-            assert!((load - 1.0 - sign * share).abs() < 1e-9, "{loads:?}");
-        }
+        let expected_loads = [1.0, -1.0, 1.0, -1.0].map(|sign| 1.0 + sign * share);
+        assert_all_near(loads, expected_loads, 1e-9);
         // A foot that is much too long and the foot diagonally opposite carry half the robot each.
         let loads = stance_with_twist(10.0).load_shares(&Body::DEFAULT, RECTANGLE);
-        for (load, expected) in loads.into_iter().zip([2.0, 0.0, 2.0, 0.0]) {
-            assert!((load - expected).abs() < 1e-6, "{loads:?}");
-        }
+        assert_all_near(loads, [2.0, 0.0, 2.0, 0.0], 1e-6);
     }
 
     #[test]
@@ -225,13 +217,9 @@ mod tests {
         let loads = Stance::LEVEL.load_shares(&body_with_mass_centre([30.0, 50.0]), RECTANGLE);
         assert_eq!(loads[2], 0.0);
         assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
-        assert!((loads.iter().sum::<f64>() - 4.0).abs() < 1e-9);
+        assert_near(loads.iter().sum(), 4.0, 1e-9);
         // No foot pulls even if the robot falls over.
-        let fallen_loads =
-            Stance::LEVEL.load_shares(&body_with_mass_centre([200.0, 0.0]), RECTANGLE);
-        assert!(
-            fallen_loads.iter().all(|load| *load >= 0.0),
-            "{fallen_loads:?}"
-        );
+        let loads = Stance::LEVEL.load_shares(&body_with_mass_centre([200.0, 0.0]), RECTANGLE);
+        assert!(loads.iter().all(|load| *load >= 0.0), "{loads:?}");
     }
 }
