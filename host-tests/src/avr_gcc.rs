@@ -3,6 +3,7 @@
 
 use std::fs;
 
+use lizard_linker::Savings;
 use simulated_uno::Image;
 use simulated_uno::avr_gcc::run;
 pub use simulated_uno::avr_gcc::{assemble, compile_c};
@@ -36,4 +37,21 @@ pub fn link(assembly: &str, object: &[u8]) -> Result<Image, String> {
     let inputs = [source_path.as_ref(), object_path.as_ref()];
     run(&FLAGS, &inputs, &elf_path)?;
     Ok(Image::read(elf_path).expect("avr-gcc's ELF loads"))
+}
+
+/// Shrinks an object as the linker does.
+///
+/// # Panics
+/// If it is not a valid object for an AVR.
+pub fn shrink(object: &[u8]) -> (Vec<u8>, Savings) {
+    let shrunk = lizard_linker::shrink(object).expect("the object is valid");
+    shrunk.expect("the object is for an AVR")
+}
+
+/// Returns the address of a variable in RAM.
+///
+/// # Panics
+/// If the image has no such variable.
+pub fn ram_address(image: &Image, name: &str) -> u16 {
+    (image.symbol(name).expect("the variable exists").address - 0x80_0000) as u16
 }

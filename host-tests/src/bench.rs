@@ -15,8 +15,9 @@ use simulated_uno::{Call, Fidelity, Image, Uno};
 
 use crate::robots::{robot, root};
 
-/// A simulated UNO with the firmware in flash, seen by a person at its console.
-pub struct FirmwareBench(SimulatedBoard);
+/// A simulated UNO with the firmware in flash, seen by a person at its console. Tests of another robot or another
+/// program make one around their own board.
+pub struct FirmwareBench(pub SimulatedBoard);
 
 impl FirmwareBench {
     /// The path of the firmware's ELF file: the one that `LIZARD_ELF` names, or else the one that `make firmware`
@@ -47,15 +48,7 @@ impl FirmwareBench {
             .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
     }
 
-    /// Powers the board on, in the simulation that follows the data sheet, and waits for the banner.
-    ///
-    /// # Panics
-    /// If there is no firmware, or no banner within 500 ms.
-    pub fn boot() -> Self {
-        Self::boot_with(Fidelity::DataSheet)
-    }
-
-    /// Powers the board on as [`FirmwareBench::boot`] does, with a chosen fidelity.
+    /// Powers the board on and waits for the banner.
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
@@ -69,13 +62,7 @@ impl FirmwareBench {
     /// # Panics
     /// If there is no firmware.
     pub fn power_on(fidelity: Fidelity) -> Self {
-        let board = SimulatedBoard::with_image(Self::image(), fidelity, robot());
-        Self(board)
-    }
-
-    /// Returns a bench around a board, for tests of another robot or another program.
-    pub fn with_board(board: SimulatedBoard) -> Self {
-        Self(board)
+        Self(SimulatedBoard::with_image(Self::image(), fidelity, robot()))
     }
 
     /// Returns a bench around a program that is not the firmware, with servos on the pins of the paper's robot: D9,
@@ -91,6 +78,30 @@ impl FirmwareBench {
     /// If the firmware does not answer.
     pub fn say(&mut self, line: &str) -> String {
         unwrap_or_panic(self.0.say(line))
+    }
+
+    /// Sends a line and expects its echo after `ok`.
+    ///
+    /// # Panics
+    /// If the firmware gives no answer, or another one.
+    #[track_caller]
+    pub fn expect_ok(&mut self, line: &str) {
+        assert_eq!(self.say(line), format!("ok {line}"));
+    }
+
+    /// Returns the texts of the printed lines from index `first` on.
+    pub fn texts_since(&mut self, first: usize) -> Vec<String> {
+        let lines = self.lines()[first..].iter();
+        lines.map(|line| line.text.clone()).collect()
+    }
+
+    /// Returns the text of the last printed line.
+    ///
+    /// # Panics
+    /// If no line was printed.
+    pub fn last_text(&mut self) -> String {
+        let line = self.lines().last();
+        line.expect("the robot has printed a line").text.clone()
     }
 
     /// Sends a line and returns its notes and its answer: see [`SimulatedBoard::ask`].

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use lizard_host::patrol::with_patrol;
-use lizard_robot::{Robot, edit::without_gait};
+use lizard_robot::{CheckedGait, Robot, edit::without_gait};
 
 use crate::random_robot::random_robot;
 
@@ -78,8 +78,21 @@ fn robot_file() -> PathBuf {
 /// # Panics
 /// If robots/paper.toml is missing or invalid.
 pub fn paper_robot() -> &'static Robot {
-    static ROBOT: LazyLock<Robot> = LazyLock::new(|| load(&root().join("robots/paper.toml")));
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| robot_named("paper"));
     &ROBOT
+}
+
+/// Returns the robot of a file in robots/, named without its extension.
+///
+/// # Panics
+/// If the file is missing or invalid.
+pub fn robot_named(name: &str) -> Robot {
+    load(&root().join(format!("robots/{name}.toml")))
+}
+
+/// The console commands of the gaits of the robot under test.
+pub fn gait_commands() -> Vec<String> {
+    robot().gaits().iter().map(CheckedGait::command).collect()
 }
 
 /// The robot under test, every robot in robots/, and random robots. The random robots are the same in every run with
@@ -89,36 +102,43 @@ pub fn paper_robot() -> &'static Robot {
 /// If a file is invalid. The message names the file.
 pub fn robots() -> &'static [NamedRobot] {
     static ROBOTS: LazyLock<Vec<NamedRobot>> = LazyLock::new(|| {
-        let mut robots = vec![NamedRobot {
-            name: "the robot under test".into(),
-            robot: robot().clone(),
-        }];
-        let folder = root().join("robots");
-        let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
-            .expect("the folder robots/ is readable")
-            .map(|entry| entry.expect("the folder entry is readable").path())
-            .filter(|path| {
-                path.extension()
-                    .is_some_and(|extension| extension == "toml")
-            })
-            .collect();
-        files.sort();
-        assert!(!files.is_empty(), "{} has no robots", folder.display());
-        robots.extend(files.iter().map(|path| {
-            NamedRobot {
-                name: path
-                    .file_name()
-                    .map_or_else(String::new, |name| name.to_string_lossy().into()),
-                robot: load(path),
-            }
-        }));
-        robots.extend((0..RANDOM_ROBOT_COUNT).map(|number| NamedRobot {
+        let random_robots = (0..RANDOM_ROBOT_COUNT).map(|number| NamedRobot {
             name: format!("random robot {number} of seed {}", seed()),
             robot: random_robot(&mut rng(number)).1,
-        }));
-        robots
+        });
+        robots_of_files().into_iter().chain(random_robots).collect()
     });
     &ROBOTS
+}
+
+/// Returns the robot under test and every robot in robots/.
+///
+/// # Panics
+/// If a file is invalid. The message names the file.
+pub fn robots_of_files() -> Vec<NamedRobot> {
+    let folder = std::fs::read_dir(root().join("robots")).expect("the folder robots/ is readable");
+    let files = folder.map(|entry| entry.expect("the folder entry is readable").path());
+    let mut files: Vec<PathBuf> = files
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .collect();
+    files.sort();
+    assert!(!files.is_empty(), "robots/ has no robots");
+    let robot_under_test = NamedRobot {
+        name: "the robot under test".into(),
+        robot: robot().clone(),
+    };
+    let named_robots = files.iter().map(|path| NamedRobot {
+        name: path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into(),
+        robot: load(path),
+    });
+    [robot_under_test].into_iter().chain(named_robots).collect()
 }
 
 /// The seed of all random numbers: `PROPTEST_RNG_SEED`, or 1 if it is not set.

@@ -60,7 +60,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
         .collect();
 
     // Runs the same image in a simulation without boot loader, port and wall clock.
-    let mut bench = FirmwareBench::boot();
+    let mut bench = FirmwareBench::boot_with(Fidelity::DataSheet);
     bench.say("stand");
     bench.run_for_frames(AWAKE_FRAMES);
     bench.say("walk");

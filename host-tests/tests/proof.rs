@@ -2,50 +2,29 @@
 //! cells. They check one in 256 of all pairs of servo positions; `make prove` checks all pairs.
 
 use std::iter::repeat;
-use std::path::PathBuf;
 
-use lizard_host_tests::seed;
+use lizard_host_tests::{NamedRobot, robots_of_files, root, seed};
 use lizard_proof::{PairSample, Proof};
 use lizard_robot::Robot;
 
 /// Sampling ratio: one in this many pairs of servo positions is checked.
 const SAMPLE_ONE_IN: u32 = 256;
 
-/// Returns the paths of the firmware's robot, by default robot.toml, and of every file in robots/.
-fn robot_files() -> Vec<PathBuf> {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    let firmware_robot = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
-    let firmware_robot =
-        firmware_robot.map_or_else(|| format!("{root}/robot.toml").into(), PathBuf::from);
-    let robots =
-        std::fs::read_dir(format!("{root}/robots")).expect("the folder robots/ is readable");
-    let mut paths: Vec<PathBuf> = robots
-        .map(|entry| entry.expect("the folder entry is readable").path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
-        .collect();
-    paths.sort();
-    paths.insert(0, firmware_robot);
-    paths
-}
-
 #[test]
 fn the_guard_judges_every_pair_of_positions_outside_the_band_or_in_a_cell_correctly() {
-    for (number, file) in (0..).zip(robot_files()) {
+    for (number, NamedRobot { name, robot }) in (0..).zip(robots_of_files()) {
         // Each robot and each seed gets a different sample of the pairs.
         let sample = PairSample {
             one_in: SAMPLE_ONE_IN,
             offset: (seed().wrapping_add(number) % u64::from(SAMPLE_ONE_IN)) as u32,
         };
-        let robot = Robot::load(&file).unwrap_or_else(|error| panic!("{error}"));
+
         let proof = Proof::compute(&robot, robot.firmware(), sample, &|_| {});
-        let pair_count: u64 = proof
+        let pair_counts = proof
             .findings
             .iter()
-            .map(|finding| finding.tally.pair_count)
-            .sum();
+            .map(|finding| finding.tally.pair_count);
+        let pair_count: u64 = pair_counts.sum();
         assert!(pair_count > 250_000, "only {pair_count} pairs were checked");
         let certified_count = proof.certified_count();
         assert!(
@@ -53,22 +32,16 @@ fn the_guard_judges_every_pair_of_positions_outside_the_band_or_in_a_cell_correc
             "{certified_count} of {pair_count} pairs in cells"
         );
         for finding in &proof.findings {
-            assert_eq!(
-                finding.tally.wrong_count,
-                0,
-                "{}, {} with {sample:?}: {:?}",
-                file.display(),
-                finding.part,
-                finding.tally.example
-            );
+            let (part, example) = (&finding.part, &finding.tally.example);
+            let message = format!("{name}, {part} with {sample:?}: {example:?}");
+            assert_eq!(finding.tally.wrong_count, 0, "{message}");
         }
     }
 }
 
 #[test]
 fn a_guard_with_another_robots_lengths_fails_the_proof() {
-    let text =
-        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/paper.toml"));
+    let text = std::fs::read_to_string(root().join("robots/paper.toml"));
     let text = text.expect("robots/paper.toml is readable");
     // Removes `look`, which is unsafe with the longer couplers, and all gaits after it.
     let text = text.split("[gait.look]").next().unwrap_or_default();
@@ -82,19 +55,13 @@ fn a_guard_with_another_robots_lengths_fails_the_proof() {
         one_in: 4096,
         offset: 1,
     };
-    assert_eq!(
-        Proof::compute(&robot, robot.firmware(), sample, &|_| {}).wrong_count(),
-        0
-    );
+    let proof = Proof::compute(&robot, robot.firmware(), sample, &|_| {});
+    assert_eq!(proof.wrong_count(), 0);
     let proof = Proof::compute(&robot, longer_robot.firmware(), sample, &|_| {});
     // The findings are those of the two ends, the two sides, and the legs, whose margins do not depend on lengths.
     let has_longer_bars = [true, false, true, true].into_iter().chain(repeat(false));
     for (finding, has_longer_bars) in proof.findings.iter().zip(has_longer_bars) {
-        assert_eq!(
-            finding.tally.wrong_count > 0,
-            has_longer_bars,
-            "{}",
-            finding.part
-        );
+        let is_wrong = finding.tally.wrong_count > 0;
+        assert_eq!(is_wrong, has_longer_bars, "{}", finding.part);
     }
 }

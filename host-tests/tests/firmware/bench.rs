@@ -40,9 +40,13 @@ const SERVO_PROGRAM: &str = r##"
         }
     }"##;
 
-fn bench() -> FirmwareBench {
-    let uno = Uno::with_image(compile_c(SERVO_PROGRAM), Fidelity::DataSheet);
+fn bench_with(program: &str) -> FirmwareBench {
+    let uno = Uno::with_image(compile_c(program), Fidelity::DataSheet);
     FirmwareBench::with_uno(uno)
+}
+
+fn bench() -> FirmwareBench {
+    bench_with(SERVO_PROGRAM)
 }
 
 #[test]
@@ -50,10 +54,8 @@ fn the_answer_to_a_line_is_distinguished_from_the_notes_before_it() {
     let mut bench = bench();
     assert_eq!(bench.next_line(500).as_deref(), Some("# lizard test"));
     let (notes, answer) = bench.ask("?");
-    assert_eq!(
-        (notes, answer.as_str()),
-        (vec!["# one".into(), "# two".into()], "ok asked")
-    );
+    assert_eq!(notes, ["# one", "# two"]);
+    assert_eq!(answer, "ok asked");
     assert_eq!(bench.say("r"), "ok resting");
     assert_eq!(bench.lines().len(), 5);
 }
@@ -76,10 +78,8 @@ fn each_frame_has_one_pulse_of_each_servo() {
         for (servo, width) in frame.widths().into_iter().enumerate() {
             // One microsecond per frame, 200 us per servo; the loops react within 40 cycles.
             let expected = first_widths[0] + 16 * n as u64 + 3200 * servo as u64;
-            assert!(
-                width.abs_diff(expected) <= 40,
-                "frame {n} servo {servo}: {width}"
-            );
+            let error = width.abs_diff(expected);
+            assert!(error <= 40, "frame {n} servo {servo}: {width}");
         }
     }
     for pair in frames.windows(2) {
@@ -89,22 +89,16 @@ fn each_frame_has_one_pulse_of_each_servo() {
 
 #[test]
 fn the_calls_of_a_function_are_timed_by_its_name() {
-    let mut bench = FirmwareBench::with_uno(Uno::with_image(
-        compile_c(
-            "#include <avr/io.h>
-            __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(1000); }
-            int main(void) { for (;;) work(); }",
-        ),
-        Fidelity::DataSheet,
-    ));
+    let mut bench = bench_with(
+        "#include <avr/io.h>
+         __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(1000); }
+         int main(void) { for (;;) work(); }",
+    );
     let calls = bench.time_calls("work", 10);
     assert!(calls.len() > 100);
     // 1000 cycles of delay and 4 of `ret`.
-    assert!(
-        calls.iter().all(|call| call.cycles() == 1004),
-        "{:?}",
-        calls[0]
-    );
+    let all_take_1004 = calls.iter().all(|call| call.cycles() == 1004);
+    assert!(all_take_1004, "{:?}", calls[0]);
 }
 
 #[test]

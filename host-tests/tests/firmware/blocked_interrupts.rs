@@ -2,6 +2,7 @@
 
 use fastrand::Rng;
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
+use lizard_host_tests::pulse_widths;
 use simulated_uno::{CYCLES_PER_MS, most_pins_high};
 
 use crate::pulses::servo_edges;
@@ -33,7 +34,7 @@ fn run_blocked_frames(
     run: &mut ReferenceRun,
     edges: DelayedEdges,
     intervals: &[BlockedInterval],
-) -> Vec<(Frame, [u64; 4])> {
+) -> Vec<(BlockedInterval, Frame, [u64; 4])> {
     let start = run.run_to_next_frame();
     let expected_widths = run.expected_widths(start, intervals.len() as u64);
     for (frame_index, (interval, expected)) in intervals.iter().zip(expected_widths).enumerate() {
@@ -52,7 +53,10 @@ fn run_blocked_frames(
         }
     }
     run.run_to(start + intervals.len() as u64 * FRAME_CYCLES - SLOT_CYCLES / 2);
-    run.frames_since(start)
+    let frames = intervals.iter().zip(run.frames_since(start));
+    let with_interval =
+        |(interval, (frame, expected)): (&BlockedInterval, _)| (*interval, frame, expected);
+    frames.map(with_interval).collect()
 }
 
 /// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. The starts of the intervals of a length
@@ -70,6 +74,12 @@ fn too_long_intervals() -> Vec<BlockedInterval> {
         .collect()
 }
 
+/// Checks that a quarter to three quarters of the edges are late.
+fn assert_near_half(count: u64, edge_count: u64) {
+    let allowed_counts = edge_count / 4..edge_count * 3 / 4;
+    assert!(allowed_counts.contains(&count), "{count} of {edge_count}");
+}
+
 #[test]
 fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
     run_in_both_simulations(|fidelity| {
@@ -81,17 +91,11 @@ fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
                 length,
             })
             .collect();
-        for (frame_index, (frame, expected)) in
+        for (interval, frame, expected) in
             run_blocked_frames(&mut run, DelayedEdges::Both, &intervals)
-                .iter()
-                .enumerate()
         {
-            assert_eq!(
-                frame.all_widths(),
-                Some(*expected),
-                "{:?}: {frame:?}",
-                intervals[frame_index]
-            );
+            let widths = frame.all_widths();
+            assert_eq!(widths, Some(expected), "{interval:?}: {frame:?}");
         }
         assert_eq!(run.late_edge_count(), 0);
     });
@@ -105,25 +109,16 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
         let mut run = ReferenceRun::start_standing(fidelity);
         let intervals = too_long_intervals();
         let mut dropped_count = 0;
-        for (frame_index, (frame, expected)) in
+        for (interval, frame, expected) in
             run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals)
-                .iter()
-                .enumerate()
         {
             for (sent_width, expected) in frame.widths.into_iter().zip(expected) {
                 dropped_count += u64::from(sent_width.is_none());
-                assert!(
-                    sent_width.is_none_or(|sent_width| sent_width == *expected),
-                    "{:?}: {frame:?}",
-                    intervals[frame_index]
-                );
+                let is_exact = sent_width.is_none_or(|sent_width| sent_width == expected);
+                assert!(is_exact, "{interval:?}: {frame:?}");
             }
         }
-        let edge_count = 4 * intervals.len() as u64;
-        assert!(
-            (edge_count / 4..edge_count * 3 / 4).contains(&dropped_count),
-            "{dropped_count} of {edge_count}"
-        );
+        assert_near_half(dropped_count, 4 * intervals.len() as u64);
         assert_eq!(run.late_edge_count(), dropped_count);
     });
 }
@@ -134,33 +129,18 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
         let mut run = ReferenceRun::start_standing(fidelity);
         let intervals = too_long_intervals();
         let mut late_count = 0;
-        for (frame_index, (frame, expected)) in
+        for (interval, frame, expected) in
             run_blocked_frames(&mut run, DelayedEdges::Falling, &intervals)
-                .iter()
-                .enumerate()
         {
-            let BlockedInterval {
-                cycles_before_edge,
-                length,
-            } = intervals[frame_index];
+            // After the blocked interval, the handler's prologue takes up to 90 cycles.
+            let max_delay = (interval.length + 90).saturating_sub(interval.cycles_before_edge);
             for (sent_width, expected) in frame.widths().into_iter().zip(expected) {
-                late_count += u64::from(sent_width != *expected);
-                // After the blocked interval, the handler's prologue takes up to 90 cycles.
-                let max_width = (expected + length + 90)
-                    .saturating_sub(cycles_before_edge)
-                    .max(*expected);
-                assert!(
-                    (*expected..=max_width).contains(&sent_width),
-                    "{:?}: {frame:?}",
-                    intervals[frame_index]
-                );
+                late_count += u64::from(sent_width != expected);
+                let is_allowed = (expected..=expected + max_delay).contains(&sent_width);
+                assert!(is_allowed, "{interval:?}: {frame:?}");
             }
         }
-        let edge_count = 4 * intervals.len() as u64;
-        assert!(
-            (edge_count / 4..edge_count * 3 / 4).contains(&late_count),
-            "{late_count} of {edge_count}"
-        );
+        assert_near_half(late_count, 4 * intervals.len() as u64);
         assert_eq!(run.late_edge_count(), late_count);
     });
 }
@@ -184,13 +164,9 @@ fn interrupts_blocked_for_most_of_a_slot_drop_its_pulse_and_no_other() {
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
                 // Each pulse starts exactly on the grid of slots.
                 let slot_starts = [0, 1, 2, 3].map(|slot| frame.start + slot * SLOT_CYCLES);
-                let is_on_grid = |(actual, scheduled): (Option<u64>, u64)| {
-                    actual.is_none_or(|actual| actual == scheduled)
-                };
-                assert!(
-                    frame.starts.into_iter().zip(slot_starts).all(is_on_grid),
-                    "{frame:?}"
-                );
+                for (start, slot_start) in frame.starts.into_iter().zip(slot_starts) {
+                    assert!(start.is_none_or(|start| start == slot_start), "{frame:?}");
+                }
             }
             assert_eq!(run.late_edge_count(), late_count_before + 1);
         }
@@ -212,13 +188,8 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                 let is_high = |uno: &simulated_uno::Uno| uno.is_high(servo_pin);
                 assert!(run.bench.uno.run_until(2 * FRAME_CYCLES, 100, is_high));
                 run.bench.uno.run_cycles(neutral[servo] - 500);
-                let rise_cycle = run
-                    .bench
-                    .uno
-                    .edges()
-                    .last()
-                    .expect("the pulse has risen")
-                    .cycle;
+                let edges = run.bench.uno.edges();
+                let rise_cycle = edges.last().expect("the pulse has risen").cycle;
                 let late_count_before = run.late_edge_count();
                 let end_cycle = rise_cycle + SLOT_CYCLES - 220 + excess_cycles;
                 let length = end_cycle - run.bench.uno.cycle();
@@ -226,27 +197,15 @@ fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
                 run.bench.run_ms(40);
                 let message = format!("A{} and {excess_cycles}", servo + 1);
                 assert_eq!(run.late_edge_count(), late_count_before + 1, "{message}");
-                let widths: Vec<u64> = run
-                    .bench
-                    .uno
-                    .pulses(servo_pin)
-                    .iter()
-                    .map(|pulse| pulse.width)
-                    .collect();
-                assert!(
-                    (SLOT_CYCLES - 300..SLOT_CYCLES + excess_cycles + 100).contains(&widths[0]),
-                    "{message}: {widths:?}"
-                );
-                assert!(
-                    widths[1..].iter().all(|width| *width == neutral[servo]),
-                    "{message}"
-                );
+                let widths = pulse_widths(&run.bench.uno, servo_pin);
+                let allowed_widths = SLOT_CYCLES - 300..SLOT_CYCLES + excess_cycles + 100;
+                assert!(allowed_widths.contains(&widths[0]), "{message}: {widths:?}");
+                let are_neutral = widths[1..].iter().all(|width| *width == neutral[servo]);
+                assert!(are_neutral, "{message}");
                 // No other servo misses its pulse.
                 let edges = servo_edges(&run.bench);
-                let mut rise_pins = edges
-                    .iter()
-                    .filter(|edge| edge.is_rising)
-                    .map(|edge| edge.pin);
+                let rises = edges.iter().filter(|edge| edge.is_rising);
+                let mut rise_pins = rises.map(|edge| edge.pin);
                 assert!(rise_pins.any(|pin| pin == servo_pin));
                 let next_pins = (1..8).map(|n| pins[(servo + n) % 4]);
                 assert!(rise_pins.take(7).eq(next_pins), "{message}");
@@ -273,10 +232,8 @@ fn milliseconds_without_interrupts_shorten_no_pulse_and_never_raise_two_pins_at_
                 for pulse in run.bench.uno.pulses(pin) {
                     // In the worst case, interrupts are enabled again in the middle of the next slot.
                     let max_width = neutral.max(SLOT_CYCLES + 300).max(neutral + length);
-                    assert!(
-                        (neutral..=max_width).contains(&pulse.width),
-                        "{pin}: {pulse:?} after {length} cycles"
-                    );
+                    let is_allowed = (neutral..=max_width).contains(&pulse.width);
+                    assert!(is_allowed, "{pin}: {pulse:?} after {length} cycles");
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::{CYCLES_PER_US, robot};
-use simulated_uno::{CYCLES_PER_MS, Fidelity, PowerCut, State};
+use simulated_uno::{CYCLES_PER_MS, EepromOperation, Fidelity, PowerCut, Pulse, State};
 
 use crate::measurements::{
     assert_no_leap, assert_no_leap_at, measure_widths, power_cycle, read_calibration,
@@ -33,6 +33,13 @@ fn assert_near(width: u64, expected: u64, message: &str) {
     );
 }
 
+/// Checks that each servo has at least `min_count` pulses, all of its width.
+fn assert_steady(pulses: &[Vec<Pulse>; 4], widths: [u64; 4], min_count: usize) {
+    for (pulses, width) in pulses.iter().zip(widths) {
+        assert!(pulses.len() >= min_count && pulses.iter().all(|pulse| pulse.width == width));
+    }
+}
+
 #[test]
 fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
     run_in_both_simulations(|fidelity| {
@@ -48,19 +55,15 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
         bench.run_ms(1000);
         let pulses = recorded_pulses(&bench);
         assert_no_leap(&pulses);
+        let is_fast = |pair: &[Pulse]| pair[0].width.abs_diff(pair[1].width) + 6 > slew_limit(0);
+        let has_fast_change = pulses[0].windows(2).any(is_fast);
         assert!(
-            pulses[0]
-                .windows(2)
-                .any(|pair| pair[0].width.abs_diff(pair[1].width) + 6 > slew_limit(0))
-                || trim < 10,
+            has_fast_change || trim < 10,
             "no change reaches the slew limit"
         );
         let last_width = pulses[0].last().expect("A1 has a pulse").width;
-        assert_near(
-            last_width,
-            calibrated_width(trim.into(), gain(), 0.0),
-            "trimmed",
-        );
+        let expected_width = calibrated_width(trim.into(), gain(), 0.0);
+        assert_near(last_width, expected_width, "trimmed");
         for (pulses, neutral) in pulses.iter().zip(neutral_widths()).skip(1) {
             assert!(pulses.iter().all(|pulse| pulse.width == neutral));
         }
@@ -76,35 +79,23 @@ fn a_new_scale_or_direction_shows_in_the_pulses_within_half_a_second() {
         let gain_magnitude = gain().abs();
         bench.say(&pose_command([5.0, 0.0, 0.0, 0.0]));
         bench.run_ms(1000);
-        assert_near(
-            measure_widths(&mut bench)[0],
-            calibrated_width(0.0, gain(), 5.0),
-            "before",
-        );
+        let expected_width = calibrated_width(0.0, gain(), 5.0);
+        assert_near(measure_widths(&mut bench)[0], expected_width, "before");
         let scale = gain_magnitude + 1.25;
-        assert_eq!(
-            bench.say(&format!("scale 1 {scale:.2}")),
-            format!("ok scale 1 {scale:.2}")
-        );
+        bench.expect_ok(&format!("scale 1 {scale:.2}"));
         bench.run_ms(500);
         let expected_width = calibrated_width(0.0, scale.copysign(gain()), 5.0);
         assert_near(measure_widths(&mut bench)[0], expected_width, "scaled");
         let other_direction = if gain() > 0.0 { '-' } else { '+' };
-        assert_eq!(
-            bench.say(&format!("dir 1 {other_direction}")),
-            format!("ok dir 1 {other_direction}")
-        );
+        bench.expect_ok(&format!("dir 1 {other_direction}"));
         bench.uno.take_edges();
         bench.run_ms(500);
         let mut gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
         gains[0] = scale;
         assert_no_leap_at(&recorded_pulses(&bench), gains);
         let expected_width = calibrated_width(0.0, -scale.copysign(gain()), 5.0);
-        assert_near(
-            measure_widths(&mut bench)[0],
-            expected_width,
-            "in the other direction",
-        );
+        let turned_width = measure_widths(&mut bench)[0];
+        assert_near(turned_width, expected_width, "in the other direction");
     });
 }
 
@@ -117,14 +108,14 @@ fn limits_that_cut_off_a_gait_and_poses_beyond_a_limit_are_refused() {
     if robot().gaits().iter().any(|gait| gait.has_movement()) {
         let refusal = bench.say(&too_narrow_line);
         assert!(refusal.starts_with("err 3 "), "{refusal}");
+        let calibration = read_calibration(&mut bench);
         assert_eq!(
-            read_calibration(&mut bench),
-            calibration_before,
-            "a refused line has changed the calibration"
+            calibration, calibration_before,
+            "a refused line has changed it"
         );
     }
     let narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
-    assert_eq!(bench.say(&narrow_line), format!("ok {narrow_line}"));
+    bench.expect_ok(&narrow_line);
     let refusal = bench.say(&pose_command([41.0, 0.0, 0.0, 0.0]));
     assert!(refusal.starts_with("err 3 "), "{refusal}");
 }
@@ -144,16 +135,13 @@ fn saved_settings_apply_from_the_first_pulse_after_power_on() {
         power_cycle(&mut bench);
         bench.run_ms(700);
         // From the first pulse on, the widths are those of the saved settings.
-        for (pulses, width) in recorded_pulses(&bench).iter().zip(widths) {
-            assert!(pulses.len() > 10 && pulses.iter().all(|pulse| pulse.width == width));
-        }
+        assert_steady(&recorded_pulses(&bench), widths, 11);
         assert_eq!(read_calibration(&mut bench), calibration);
-        let lines = bench.lines();
+        let line_count = bench.lines().len();
+        let last_lines = bench.texts_since(line_count - 12).join("\n");
         assert!(
-            !lines[lines.len() - 12..]
-                .iter()
-                .any(|line| line.text.contains("calibration:")),
-            "there is a note about the calibration although the memory is valid"
+            !last_lines.contains("calibration:"),
+            "the memory is valid: {last_lines}"
         );
     });
 }
@@ -172,19 +160,16 @@ fn load_factory_and_power_on_discard_unsaved_settings() {
     assert_eq!(bench.say("load"), "ok load");
     assert_eq!(read_calibration(&mut bench), saved_calibration);
     bench.run_ms(500);
-    assert_near(
-        measure_widths(&mut bench)[0],
-        calibrated_width(1.0, gain(), 0.0),
-        "loaded",
-    );
+    let expected_width = calibrated_width(1.0, gain(), 0.0);
+    assert_near(measure_widths(&mut bench)[0], expected_width, "loaded");
     assert_eq!(bench.say("factory"), "ok factory");
     assert_eq!(read_calibration(&mut bench), factory_calibration);
     bench.run_ms(500);
     assert_eq!(measure_widths(&mut bench), neutral_widths());
     power_cycle(&mut bench);
+    let calibration = read_calibration(&mut bench);
     assert_eq!(
-        read_calibration(&mut bench),
-        saved_calibration,
+        calibration, saved_calibration,
         "`factory` alone has saved settings"
     );
 }
@@ -201,31 +186,29 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
                 run.bench.run_ms(3);
             }
             run.bench.run_ms(150);
-            let lines = run.bench.lines();
-            assert_eq!(
-                lines.last().expect("the robot has answered").text,
-                "ok save"
-            );
+            assert_eq!(run.bench.last_text(), "ok save");
         }
         let operations = run.bench.uno.eeprom_operations();
         if run.is_data_sheet_simulation() {
             assert!(operations.len() > 6 * 6, "{}", operations.len());
         }
         for operation in &operations {
-            assert_ne!(
-                operation.old_value, operation.new_value,
-                "an unchanged byte is written"
-            );
+            let EepromOperation {
+                old_value,
+                new_value,
+                ..
+            } = operation;
+            assert_ne!(old_value, new_value, "an unchanged byte is written");
         }
         for pair in operations.windows(2) {
+            let interval = pair[1].cycle - pair[0].cycle;
             assert!(
-                pair[1].cycle - pair[0].cycle >= 3 * CYCLES_PER_MS,
+                interval >= 3 * CYCLES_PER_MS,
                 "two bytes are written at once"
             );
         }
         assert_eq!(run.late_edge_count(), 0);
-        let status = Status::read(&mut run.bench);
-        assert_eq!(status.number("rx_lost"), 0.0);
+        assert_eq!(Status::read(&mut run.bench).number("rx_lost"), 0.0);
     });
 }
 
@@ -260,35 +243,18 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_standing(fidelity);
         let gait = first_moving_gait();
-        assert_eq!(
-            bench.say(&format!("boot {gait}")),
-            format!("ok boot {gait}")
-        );
+        bench.expect_ok(&format!("boot {gait}"));
         assert_eq!(bench.say("save"), "ok save");
         power_cycle(&mut bench);
-        let standing_pulses = run_for_pulses(&mut bench, 2900);
-        let neutral = neutral_widths();
-        for (pulses, width) in standing_pulses.iter().zip(neutral) {
-            assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
-        }
+        assert_steady(&run_for_pulses(&mut bench, 2900), neutral_widths(), 1);
         bench.run_ms(300);
-        let last_line = bench
-            .lines()
-            .last()
-            .expect("the robot has printed a note")
-            .text
-            .clone();
-        assert_eq!(last_line, format!("# boot: {gait}"));
-        assert_eq!(
-            Status::read(&mut bench).text("gait"),
-            gait.replace(' ', "-")
-        );
+        assert_eq!(bench.last_text(), format!("# boot: {gait}"));
+        let status = Status::read(&mut bench);
+        assert_eq!(status.text("gait"), gait.replace(' ', "-"));
         power_cycle(&mut bench);
         bench.run_ms(2000);
         bench.uno.send(b" ");
-        for (pulses, width) in run_for_pulses(&mut bench, 4000).iter().zip(neutral) {
-            assert!(!pulses.is_empty() && pulses.iter().all(|pulse| pulse.width == width));
-        }
+        assert_steady(&run_for_pulses(&mut bench, 4000), neutral_widths(), 1);
     });
 }
 
@@ -315,19 +281,16 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
             assert_eq!(pulses[servo][0].width, rest_widths[servo]);
             if servo > 0 {
                 let interval = pulses[servo][0].start - pulses[servo - 1][0].start;
+                let tenth = 5 * FRAME_CYCLES + SLOT_CYCLES;
                 assert_eq!(
-                    interval,
-                    5 * FRAME_CYCLES + SLOT_CYCLES,
-                    "the servos do not wake a tenth of a second apart"
+                    interval, tenth,
+                    "the servos wake not a tenth of a second apart"
                 );
             }
         }
         assert_no_leap(&pulses);
-        assert_eq!(
-            measure_widths(&mut bench),
-            neutral_widths(),
-            "the robot does not stand"
-        );
+        let widths = measure_widths(&mut bench);
+        assert_eq!(widths, neutral_widths(), "the robot does not stand");
         // The robot has moved since it rested, so its saved rest pose is no longer valid.
         power_cycle(&mut bench);
         bench.run_ms(300);
@@ -346,34 +309,31 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
     bench.run_ms(400);
     let operation_count = bench.uno.eeprom_operations().len() - operations_before;
     assert!(operation_count > 10, "{operation_count}");
-    let mut neutral_and_rest_counts = [0, 0];
+    let (mut neutral_count, mut rest_count) = (0, 0);
     for operation in 0..operation_count as u64 {
-        for (stuck_bits, is_in_write) in [(0, true), (0x5a, true), (0x33, false)] {
+        let cuts: [(u8, fn(u64) -> PowerCut); 3] = [
+            (0, PowerCut::InWrite),
+            (0x5a, PowerCut::InWrite),
+            (0x33, PowerCut::InErase),
+        ];
+        for (stuck_bits, cut) in cuts {
             bench.uno.set_eeprom(&blank_eeprom);
             power_cycle(&mut bench);
             bench.run_ms(500);
             move_to_nearby_pose(&mut bench);
-            let cut = if is_in_write {
-                PowerCut::InWrite(operation)
-            } else {
-                PowerCut::InErase(operation)
-            };
-            bench.uno.cut_power(cut, stuck_bits);
+            bench.uno.cut_power(cut(operation), stuck_bits);
             bench.say("rest");
             bench.uno.run_ms(400);
             assert_eq!(*bench.uno.state(), State::Off);
             power_cycle(&mut bench);
             bench.run_ms(600);
-            let first_widths = recorded_pulses(&bench).map(|pulses| pulses[0].width);
-            assert!(
-                first_widths == rest_widths || first_widths == neutral_widths(),
-                "byte {operation}, {stuck_bits:02x}: {first_widths:?}"
-            );
-            neutral_and_rest_counts[usize::from(first_widths == rest_widths)] += 1;
+            match recorded_pulses(&bench).map(|pulses| pulses[0].width) {
+                widths if widths == rest_widths => rest_count += 1,
+                widths if widths == neutral_widths() => neutral_count += 1,
+                widths => panic!("byte {operation}, {stuck_bits:02x}: {widths:?}"),
+            }
         }
     }
-    assert!(
-        neutral_and_rest_counts[0] > neutral_and_rest_counts[1] && neutral_and_rest_counts[1] > 0,
-        "{neutral_and_rest_counts:?}"
-    );
+    let counts = (neutral_count, rest_count);
+    assert!(neutral_count > rest_count && rest_count > 0, "{counts:?}");
 }

@@ -2,13 +2,15 @@
 
 use fastrand::Rng;
 use lizard_host::sim::analysis::servo_frames_of;
-use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
+use lizard_host_tests::{
+    CYCLES_PER_US, FirmwareBench, Frame, assert_contains, gait_commands, robot,
+};
 use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
 
 use crate::{
-    FRAMES_PER_SECOND, Status, boot_and_command, boot_standing, first_moving_gait, gait_commands,
-    parse_angles, pose_command, run_in_both_simulations, widths,
+    FRAMES_PER_SECOND, Status, boot_and_command, boot_standing, first_moving_gait, parse_angles,
+    pose_command, run_in_both_simulations, widths,
 };
 
 /// Largest rounding error of a printed angle, deg: half a step each of the two printed decimals, of the pulse width
@@ -22,10 +24,7 @@ fn the_banner_and_an_answer_come_within_a_second_of_power_on() {
         let hash = robot().firmware().hash();
         let banner = bench.lines()[0].text.clone();
         assert!(banner.starts_with("# lizard "), "{banner}");
-        assert!(
-            banner.contains(&format!(" {hash:08x}, send help")),
-            "{banner}"
-        );
+        assert_contains(&banner, &format!(" {hash:08x}, send help"));
         assert!(bench.say("status").starts_with("ok gait=stand "));
         assert!(bench.uno.cycle() < FREQUENCY);
     });
@@ -40,10 +39,7 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
             let text = format!("{end}{end} \t{end}stand{end}{end}stop{end}status{end}");
             bench.uno.send(text.as_bytes());
             bench.run_ms(300);
-            let lines: Vec<&str> = bench.lines()[line_count_before..]
-                .iter()
-                .map(|line| line.text.as_str())
-                .collect();
+            let lines = bench.texts_since(line_count_before);
             assert_eq!(lines.len(), 3, "{end:?}: {lines:?}");
             assert_eq!(lines[..2], ["ok stand", "ok stop"]);
             assert!(lines[2].starts_with("ok gait=stop "));
@@ -60,14 +56,10 @@ fn case_and_blanks_do_not_matter() {
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("every robot has `stand`");
     let typed_gait = gait.to_uppercase().replacen(' ', "   \t", 1);
-    assert!(
-        bench.say(&format!(" {typed_gait} ")).starts_with("ok "),
-        "{typed_gait}"
-    );
-    assert_eq!(
-        Status::read(&mut bench).text("gait"),
-        gait.replace(' ', "-")
-    );
+    let answer = bench.say(&format!(" {typed_gait} "));
+    assert!(answer.starts_with("ok "), "{typed_gait}");
+    let status = Status::read(&mut bench);
+    assert_eq!(status.text("gait"), gait.replace(' ', "-"));
     assert!(bench.say(" speed\t50 ").starts_with("ok speed"));
     assert_eq!(Status::read(&mut bench).text("speed"), "50");
 }
@@ -79,10 +71,10 @@ fn a_line_may_have_63_characters_and_no_more() {
     assert_eq!(bench.say(&longest_line), "ok stand");
     assert!(bench.say(&format!("{longest_line} ")).starts_with("err 6 "));
     assert!(bench.say(&"x".repeat(500)).starts_with("err 6 "));
+    let answer = bench.say("stop");
     assert_eq!(
-        bench.say("stop"),
-        "ok stop",
-        "the line after an overlong line is not read as a new line"
+        answer, "ok stop",
+        "the line after an overlong line is not read anew"
     );
 }
 
@@ -127,9 +119,9 @@ fn refused_poses() -> Vec<(String, u8)> {
     let margin = margin.expect("some pose violates a margin");
     let stroke = stroke.map(|line| (line, 5));
     println!("a pose that violates only a stroke: {stroke:?}");
-    [(travel, 3), (margin, 4)]
+    [Some((travel, 3)), Some((margin, 4)), stroke]
         .into_iter()
-        .chain(stroke)
+        .flatten()
         .collect()
 }
 
@@ -198,24 +190,23 @@ fn every_refused_line_gets_its_error_code_and_changes_nothing() {
         let mut reference_bench = boot_and_command(&first_moving_gait(), fidelity);
         for &(line, code) in &refused_lines {
             let answer = bench.say(line);
-            let expected = format!("err {code} ");
+            let text = answer.strip_prefix(&format!("err {code} "));
             assert!(
-                answer.starts_with(&expected) && answer.len() > expected.len(),
+                text.is_some_and(|text| !text.is_empty()),
                 "{line}: {answer}"
             );
         }
         // Both boards must have walked for the same time before they are compared.
         for board in [&mut bench, &mut reference_bench] {
-            let remaining_cycles = 4 * FREQUENCY - board.uno.cycle();
-            board.uno.run_cycles(remaining_cycles);
+            board.uno.run_until_cycle(4 * FREQUENCY);
         }
-        assert_eq!(
-            bench.run_for_frames(2 * FRAMES_PER_SECOND),
-            reference_bench.run_for_frames(2 * FRAMES_PER_SECOND)
-        );
-        let (bench_status, reference_status) =
-            (Status::read(&mut bench), Status::read(&mut reference_bench));
-        assert_eq!(bench_status.0, reference_status.0);
+        let [(frames, status), (reference_frames, reference_status)] = [bench, reference_bench]
+            .map(|mut bench| {
+                let frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
+                (frames, Status::read(&mut bench).0)
+            });
+        assert_eq!(frames, reference_frames);
+        assert_eq!(status, reference_status);
     });
 }
 
@@ -232,18 +223,10 @@ fn while_the_servos_rest_only_stand_moves_them() {
             assert!(bench.say(line).starts_with("ok "), "{line}");
         }
         bench.run_ms(100);
-        assert!(
-            bench
-                .run_for_frames(10)
-                .iter()
-                .all(|frame| frame.is_silent())
-        );
+        assert!(bench.run_for_frames(10).iter().all(Frame::is_silent));
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(1000);
-        assert_eq!(
-            bench.say(&first_moving_gait()),
-            format!("ok {}", first_moving_gait())
-        );
+        bench.expect_ok(&first_moving_gait());
     });
 }
 
@@ -274,20 +257,17 @@ fn status_agrees_with_the_pulses() {
             .angles
             .expect("each servo has a pulse");
         for (servo, (printed, sent)) in status.pose().into_iter().zip(sent_angles).enumerate() {
+            let error_deg = (printed - sent).abs();
             assert!(
-                (printed - sent).abs() <= MAX_PRINT_ERROR_DEG,
+                error_deg <= MAX_PRINT_ERROR_DEG,
                 "{servo}: {printed} and {sent}"
             );
         }
-        let solution = robot()
-            .lizard()
-            .solve(&sent_angles.into())
-            .expect("the pose is safe");
-        let margin = solution.margins.min().1;
+        let solution = robot().lizard().solve(&sent_angles.into());
+        let margin = solution.expect("the pose is safe").margins.min().1;
         assert!((status.number("margin") - margin).abs() <= 0.0025);
         assert_eq!(status.text("gait"), "stop");
-        assert_eq!(status.number("late"), 0.0);
-        assert_eq!(status.number("rx_lost"), 0.0);
+        assert_eq!(status.numbers(["late", "rx_lost"]), [0.0; 2]);
         assert!((0.0..1.0).contains(&status.number("phase")));
     });
 }
@@ -346,10 +326,8 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
             let report = line.strip_prefix("# t=").expect("the line is a report");
             let (frame_number, pose) = report.split_once(" pose=").expect("a report has a pose");
             let frame_number: u64 = frame_number.parse().expect("the frame is a number");
-            assert!(
-                previous_frame.is_none_or(|previous| frame_number == previous + 7),
-                "{lines:?}"
-            );
+            let is_next = previous_frame.is_none_or(|previous| frame_number == previous + 7);
+            assert!(is_next, "{lines:?}");
             previous_frame = Some(frame_number);
             let printed_angles = parse_angles(pose);
             let was_sent = sent_frames.iter().any(|frame| {
@@ -377,8 +355,7 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
         let max_step_deg = robot().speed_limits().gait_slew / FRAMES_PER_SECOND as f64;
         let mut spans: Vec<u64> = Vec::new();
         for (percent, slowdown) in [(100, 1), (50, 2), (10, 10)] {
-            let line = format!("speed {percent}");
-            assert_eq!(bench.say(&line), format!("ok {line}"));
+            bench.expect_ok(&format!("speed {percent}"));
             bench.run_ms(500);
             let cycle_frames = slowdown * frame_count;
             let sent_widths = widths(&bench.run_for_frames(2 * cycle_frames));
@@ -387,22 +364,20 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
                 // Allows half a percent of a gait cycle, and one frame, since a gait cycle may not be a whole number
                 // of frames.
                 let frame_step = CYCLES_PER_US * servo.us_per_degree.abs() * max_step_deg;
-                let max_error = 0.005 * gait.period() * FRAMES_PER_SECOND as f64 * frame_step
-                    + frame_step
-                    + 2.0;
+                let pace_error_frames = 0.005 * gait.period() * FRAMES_PER_SECOND as f64;
+                let max_error = (pace_error_frames + 1.0) * frame_step + 2.0;
                 for (first_widths, second_widths) in first_cycle.iter().zip(second_cycle) {
                     let error = first_widths[i].abs_diff(second_widths[i]) as f64;
                     assert!(
                         error <= max_error,
-                        "{percent} %: widths a gait cycle apart differ by {error} CPU cycles"
+                        "{percent} %: {error} cycles after a gait cycle"
                     );
                 }
             }
             // In a gait cycle, each leg makes its full sweep at any speed.
-            let first_servo_widths = || first_cycle.iter().map(|widths| widths[0]);
-            spans.push(
-                first_servo_widths().max().unwrap_or(0) - first_servo_widths().min().unwrap_or(0),
-            );
+            let a1_widths = first_cycle.iter().map(|widths| widths[0]);
+            let (min, max) = (a1_widths.clone().min(), a1_widths.max());
+            spans.push(max.unwrap_or(0) - min.unwrap_or(0));
         }
         let frame_step = CYCLES_PER_US * robot().servos()[0].us_per_degree.abs() * max_step_deg;
         let is_equal_span = |span: &u64| span.abs_diff(spans[0]) as f64 <= 2.0 * frame_step;

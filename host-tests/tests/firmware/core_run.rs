@@ -20,12 +20,10 @@ fn end_cycle() -> u64 {
 /// Returns a random line: any command, valid or not.
 fn random_line(rng: &mut Rng) -> String {
     let pose_near = |rng: &mut Rng, max_deg: f64| {
-        let angles: Vec<String> = robot()
+        let [a1, a2, a3, a4] = robot()
             .servos()
-            .iter()
-            .map(|servo| format!("{:.2}", servo.neutral + max_deg * (2.0 * rng.f64() - 1.0)))
-            .collect();
-        format!("pose {}", angles.join(" "))
+            .map(|servo| servo.neutral + max_deg * (2.0 * rng.f64() - 1.0));
+        format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
     };
     match rng.u64(..20) {
         0..7 => rng
@@ -89,49 +87,31 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
     for_each_in_parallel(&cases, |&(fidelity, seed)| {
         let mut bench = boot_standing(fidelity);
         let pins = servo_pins(robot());
-        let is_rise = |edge: &&simulated_uno::Edge| edge.pin == pins[0] && edge.is_rising;
-        let first_rise = bench
-            .uno
-            .edges()
-            .iter()
-            .find(is_rise)
-            .expect("the robot stands")
-            .cycle;
+        let first_rise = bench.first_pulse_cycle().expect("the robot stands");
         let sent_line_count = send_random_lines(&mut bench, first_rise, &mut Rng::with_seed(seed));
         let status = Status::read(&mut bench);
-        assert_eq!(
-            (status.number("late"), status.number("rx_lost")),
-            (0.0, 0.0)
-        );
+        assert_eq!(status.numbers(["late", "rx_lost"]), [0.0; 2]);
 
         bench.uno.run_until_cycle(end_cycle());
         let frame_count = (bench.uno.cycle() - first_cycle(first_rise)) / FRAME_CYCLES;
         let sent_frames = group_frames(&bench.uno.edges(), pins, first_rise, frame_count);
-        let commands = core_run::play(
-            *robot().firmware(),
-            &bench.uno.received_by_uno(),
-            first_rise,
-            sent_frames.len(),
-        );
+        let (received, count) = (bench.uno.received_by_uno(), sent_frames.len());
+        let commands = core_run::play(*robot().firmware(), &received, first_rise, count);
         let mut distinct_widths = std::collections::HashSet::new();
         for (n, (frame, expected)) in sent_frames.iter().zip(&commands.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));
+            let expected = expected.map(u64::from);
             assert_eq!(
-                widths,
-                expected.map(u64::from),
+                widths, expected,
                 "frame {n} differs, or the ELF is out of date"
             );
             distinct_widths.insert(widths);
         }
+        let distinct_count = distinct_widths.len() as u64;
         println!(
-            "{fidelity:?}: {sent_line_count} lines, {frame_count} frames, {} sets of widths",
-            distinct_widths.len()
+            "{fidelity:?}: {sent_line_count} lines, {frame_count} frames, {distinct_count} sets of widths"
         );
-        let counts = [
-            frame_count,
-            u64::from(sent_line_count),
-            distinct_widths.len() as u64,
-        ];
+        let counts = [frame_count, u64::from(sent_line_count), distinct_count];
         let min_counts = [2_900, 100, 500].map(|minimum| minimum * dialogue_minutes());
         assert!((0..3).all(|i| counts[i] > min_counts[i]), "{counts:?}");
 

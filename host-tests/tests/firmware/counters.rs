@@ -20,10 +20,8 @@ fn each_overrun_of_the_receiver_is_counted() {
         overruns_before = bench.uno.overruns();
         bench.uno.send(b"\n");
         bench.run_ms(20);
-        assert_eq!(
-            Status::read(&mut bench).number("rx_lost"),
-            f64::from(overrun_count)
-        );
+        let lost_count = Status::read(&mut bench).number("rx_lost");
+        assert_eq!(lost_count, f64::from(overrun_count));
     }
 }
 
@@ -47,10 +45,8 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
         let (mut answer_delay, mut read_lead, mut attempt) = (150_000, 2_800, 0);
         loop {
             attempt += 1;
-            let new_delay = measure_answer_delay(
-                &mut run,
-                rise_of_attempt(attempt) - read_lead - answer_delay,
-            );
+            let arrival_cycle = rise_of_attempt(attempt) - read_lead - answer_delay;
+            let new_delay = measure_answer_delay(&mut run, arrival_cycle);
             if new_delay == answer_delay {
                 break;
             }
@@ -80,18 +76,20 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
             let lines = &run.bench.lines()[line_count_before..];
             let answer = lines.iter().find(|line| line.is_answer());
             let answer = answer.expect("the robot answers").text.clone();
-            let count = answer
+            match answer
                 .split(' ')
-                .find_map(|pair| pair.strip_prefix("late="));
-            match count {
+                .find_map(|pair| pair.strip_prefix("late="))
+            {
                 Some("255") => old_value_count += 1,
                 Some("256") => new_value_count += 1,
                 count => panic!("{count:?} in round {round} of the sweep: {answer}"),
             }
         }
+        let counts = (old_value_count, new_value_count);
+        let covers_both_sides = old_value_count > 20 && new_value_count > 20;
         assert!(
-            old_value_count > 20 && new_value_count > 20,
-            "{old_value_count} old, {new_value_count} new: the sweep does not cover both sides of the read"
+            covers_both_sides,
+            "{counts:?}: the sweep misses a side of the read"
         );
     });
 }

@@ -8,9 +8,9 @@ use std::ops::Range;
 use lizard_core::console::word::Word;
 use lizard_core::numbers::section::{Header, Numbers, SPACE_BYTES, START_ADDRESS, write_checksum};
 use lizard_host::board::SimulatedBoard;
-use lizard_host::firmware::read_with_robot;
-use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, rng, robot, root};
-use lizard_robot::Robot;
+
+use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, rng, robot, robot_named};
+
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin};
 
 use crate::measurements::LED;
@@ -139,13 +139,9 @@ fn sections_with_flipped_bit() -> Vec<DamagedSection> {
     let notes = [MISSING_ROBOT_NOTE, OTHER_VERSION_NOTE]
         .into_iter()
         .chain([DAMAGED_ROBOT_NOTE; 5]);
-    let mut sections: Vec<DamagedSection> = fields
-        .into_iter()
-        .zip(notes)
-        .map(|(range, note)| flip(range, note))
-        .collect();
-    sections.extend(remaining_ranges.map(|range| flip(range, DAMAGED_ROBOT_NOTE)));
-    sections
+    let remaining = remaining_ranges.map(|range| (range, DAMAGED_ROBOT_NOTE));
+    let ranges = fields.into_iter().zip(notes).chain(remaining);
+    ranges.map(|(range, note)| flip(range, note)).collect()
 }
 
 /// Returns sections whose checksum is right but whose content is wrong.
@@ -190,7 +186,7 @@ fn boot_damaged_board(damaged: &DamagedSection, fidelity: Fidelity) -> FirmwareB
     image
         .replace(space, &damaged.section)
         .expect("the section fits");
-    FirmwareBench::with_board(SimulatedBoard::with_image(image, fidelity, robot()))
+    FirmwareBench(SimulatedBoard::with_image(image, fidelity, robot()))
 }
 
 /// Checks that the firmware finds no robot, sends no pulse and reports the damage.
@@ -198,21 +194,19 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     let bench = &mut boot_damaged_board(damaged, Fidelity::DataSheet);
     bench.run_ms(300);
     let banner = format!("# lizard {} without a robot", env!("CARGO_PKG_VERSION"));
-    let lines: Vec<String> = bench.lines().iter().map(|line| line.text.clone()).collect();
+    let lines = bench.texts_since(0);
     assert!(lines[0].starts_with(&banner), "{lines:?}");
     assert_eq!(lines[1..], [damaged.expected_note]);
     // The firmware answers only questions, and refuses all other commands.
     let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
     let refused_words = Word::ALL.iter().filter(|word| !questions.contains(word));
     let examples = refused_words.map(|word| word.example().to_owned());
-    for line in [
+    let moves = [
         first_moving_gait(),
         "stand".to_owned(),
         pose_command([1.0; 4]),
-    ]
-    .into_iter()
-    .chain(examples)
-    {
+    ];
+    for line in moves.into_iter().chain(examples) {
         let (notes, answer) = bench.ask(&line);
         assert_eq!(answer, "err 10 no robot in the flash", "{line}");
         assert!(notes.is_empty(), "{line}: {notes:?}");
@@ -230,16 +224,11 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
         status,
         "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0"
     );
-    let fault_lines = bench
-        .lines()
-        .iter()
-        .filter(|line| line.text.starts_with("# fault:"));
+    let texts = bench.texts_since(0).into_iter();
+    let fault_lines = texts.filter(|text| text.starts_with("# fault:"));
     assert_eq!(fault_lines.count(), 1, "reports of the fault");
-    let unexpected_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
-    assert_eq!(
-        unexpected_edge, None,
-        "a pin other than the LED's has changed"
-    );
+    let other_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
+    assert_eq!(other_edge, None, "a pin other than the LED's has changed");
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
     }
@@ -270,20 +259,16 @@ fn the_largest_section_is_checked_within_a_frame() {
     for_each_in_parallel(
         &["grain", "large", "own-gaits", "paper", "unequal"],
         |name| {
-            let robot = Robot::load(root().join(format!("robots/{name}.toml")))
-                .expect("the file describes a robot");
-            let image = read_with_robot(&FirmwareBench::elf(), &robot)
-                .expect("`make firmware` has built the ELF");
+            let robot = robot_named(name);
+            let image = FirmwareBench::image_with(&robot);
             let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
-            let calls = FirmwareBench::with_board(board).time_calls("Robot::open", 200);
+            let calls = FirmwareBench(board).time_calls("Robot::open", 200);
             let [call] = calls[..] else {
                 panic!("{name}: {calls:?}");
             };
             let section_bytes = robot.section().len();
-            println!(
-                "{name}: {section_bytes} bytes in {:.1} ms",
-                call.cycles() as f64 / CYCLES_PER_MS as f64
-            );
+            let ms = call.cycles() as f64 / CYCLES_PER_MS as f64;
+            println!("{name}: {section_bytes} bytes in {ms:.1} ms");
             assert!(call.cycles() < FRAME_CYCLES, "{name}: {call:?}");
         },
     );

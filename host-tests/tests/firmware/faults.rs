@@ -53,10 +53,7 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     );
     let message = "no line for as long as deadman says, stopped";
     assert_stopped(&mut bench, "link", message, 3);
-    assert_eq!(
-        bench.say(&first_moving_gait()),
-        format!("ok {}", first_moving_gait())
-    );
+    bench.expect_ok(&first_moving_gait());
     assert_eq!(Status::read(&mut bench).text("fault"), "none");
 }
 
@@ -69,10 +66,7 @@ fn deadman_is_off_unless_set_and_does_not_affect_a_standing_robot() {
     bench.say("deadman 100");
     bench.run_ms(5_000);
     let status = Status::read(&mut bench);
-    assert_eq!(
-        (status.text("gait"), status.text("fault")),
-        ("stand", "none")
-    );
+    assert_eq!(status.texts(["gait", "fault"]), ["stand", "none"]);
 }
 
 #[test]

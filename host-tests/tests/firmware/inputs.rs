@@ -47,7 +47,7 @@ fn patrol_robot_with_pins(button_pin: &str, nose_pin: &str) -> Robot {
 fn boot_with_inputs(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot)
         .expect("the firmware prints its banner");
-    let mut bench = FirmwareBench::with_board(board);
+    let mut bench = FirmwareBench(board);
     for pin in [BUTTON, NOSE] {
         bench.uno.set_contact(pin, false);
     }
@@ -81,14 +81,15 @@ fn press(bench: &mut FirmwareBench, pin: Pin, ms: u64) {
 
 /// Returns the notes (lines that begin with `#`) from line `first_line` on, except those of the banner.
 fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
-    let lines = bench.lines()[first_line..]
-        .iter()
-        .map(|line| line.text.clone());
     let excluded_starts = ["# lizard", "# calibration"];
     let is_note = |line: &String| {
         line.starts_with('#') && !excluded_starts.iter().any(|start| line.starts_with(start))
     };
-    lines.filter(is_note).collect()
+    bench
+        .texts_since(first_line)
+        .into_iter()
+        .filter(is_note)
+        .collect()
 }
 
 /// Predicts the travel for these pulses with the contact model.

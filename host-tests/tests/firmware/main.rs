@@ -12,7 +12,7 @@ use std::thread;
 
 use lizard_host::sim::tour;
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, Frame, robot};
-use lizard_robot::{CheckedGait, command_of};
+use lizard_robot::command_of;
 use simulated_uno::Fidelity;
 
 mod bad_input;
@@ -63,17 +63,14 @@ fn comparable_line(line: &str, fidelity: Fidelity) -> String {
     let is_status = line.starts_with("ok gait=");
     let is_known =
         |pair: &&str| !is_status || !unknown_keys.iter().any(|key| pair.starts_with(key));
-    line.split(' ')
-        .filter(is_known)
-        .collect::<Vec<_>>()
-        .join(" ")
+    let known_pairs: Vec<&str> = line.split(' ').filter(is_known).collect();
+    known_pairs.join(" ")
 }
 
 /// Runs a test on stock simavr and on corrected simavr, in parallel.
 fn run_in_both_simulations(test: impl Fn(Fidelity) + Sync) {
-    for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
-        test(*fidelity)
-    });
+    let fidelities = [Fidelity::Stock, Fidelity::DataSheet];
+    for_each_in_parallel(&fidelities, |fidelity| test(*fidelity));
 }
 
 /// Runs a test for every case, each case on its own thread.
@@ -92,7 +89,7 @@ fn for_each_in_parallel<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T
 /// Boots the board, sends the command `line` and returns the board one second later.
 fn boot_and_command(line: &str, fidelity: Fidelity) -> FirmwareBench {
     let mut bench = boot_standing(fidelity);
-    assert_eq!(bench.say(line), format!("ok {line}"));
+    bench.expect_ok(line);
     bench.run_ms(1000);
     bench
 }
@@ -108,29 +105,20 @@ fn boot_standing(fidelity: Fidelity) -> FirmwareBench {
 /// most of these tests would run on a robot that only stands.
 fn first_moving_gait() -> String {
     let moving_gaits = tour::moving_gaits(robot());
-    let first_gait = moving_gaits
-        .first()
-        .expect("a robot under test has a gait that moves");
-    command_of(first_gait)
+    command_of(
+        moving_gaits
+            .first()
+            .expect("a robot under test has a gait that moves"),
+    )
 }
 
 /// Returns the commands for all gaits.
-fn gait_commands() -> Vec<String> {
-    robot().gaits().iter().map(CheckedGait::command).collect()
-}
 
 /// Returns the command for the pose at these angles from neutral, deg.
 fn pose_command(sweeps_deg: [f64; 4]) -> String {
-    let servos = robot().servos();
-    let angles: Vec<String> = (0..4)
-        .map(|i| {
-            format!(
-                "{:.2}",
-                (servos[i].neutral + sweeps_deg[i]).rem_euclid(360.0)
-            )
-        })
-        .collect();
-    format!("pose {}", angles.join(" "))
+    let angles: [f64; 4] = std::array::from_fn(|i| robot().servos()[i].neutral + sweeps_deg[i]);
+    let [a1, a2, a3, a4] = angles.map(|angle| angle.rem_euclid(360.0));
+    format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
 /// Returns the pulse widths of the neutral pose, cycles.
@@ -178,9 +166,18 @@ impl Status {
 
     /// Returns the value of a key as a number.
     fn number(&self, key: &str) -> f64 {
-        self.text(key)
-            .parse()
-            .unwrap_or_else(|_| panic!("{key}={}", self.text(key)))
+        let text = self.text(key);
+        text.parse().unwrap_or_else(|_| panic!("{key}={text}"))
+    }
+
+    /// The values of some keys.
+    fn texts<const N: usize>(&self, keys: [&str; N]) -> [&str; N] {
+        keys.map(|key| self.text(key))
+    }
+
+    /// The values of some keys, as numbers.
+    fn numbers<const N: usize>(&self, keys: [&str; N]) -> [f64; N] {
+        keys.map(|key| self.number(key))
     }
 
     /// Returns the servo angles, deg.

@@ -3,14 +3,14 @@
 use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use lizard_host::bench::longest_step;
 use lizard_host::board::SimulatedBoard;
-use lizard_host::sim::core_run;
-use lizard_host::sim::frame::FRAME_CYCLES;
+
 use lizard_host::sim::tour;
 use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
 use lizard_host_tests::{FirmwareBench, rng};
 use lizard_robot::{Robot, command_of};
 use simulated_uno::Fidelity;
 
+use crate::pulses::commanded_widths;
 use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
 
 /// Lines that move no servo, each sent at the full rate of the serial line.
@@ -26,7 +26,7 @@ fn robot_count() -> u64 {
 /// computes for it.
 fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, robot_name: &str) {
     let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
-    let mut bench = FirmwareBench::with_board(board.expect("`make firmware` has built the ELF"));
+    let mut bench = FirmwareBench(board.expect("`make firmware` has built the ELF"));
     bench.run_ms(1000);
     let first_rise = bench.first_pulse_cycle().expect("the robot stands");
     bench.say("watch 1");
@@ -34,21 +34,10 @@ fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, robot_name: &str)
     let received_count = bench.uno.received_by_uno().len();
     bench.uno.flood(flood.as_bytes());
     let sent_frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
-    let frames_before = ((sent_frames[0].start - first_rise) / FRAME_CYCLES) as usize;
-    let received_bytes = &bench.uno.received_by_uno()[..received_count];
-    let commands = core_run::play(
-        *robot.firmware(),
-        received_bytes,
-        first_rise,
-        frames_before + sent_frames.len(),
-    );
-    for (frame, expected) in sent_frames.iter().zip(&commands.widths[frames_before..]) {
-        let expected = expected.map(u64::from);
-        assert_eq!(
-            frame.all_widths(),
-            Some(expected),
-            "{robot_name}, {flood:?}: {frame:?}"
-        );
+    let expected_widths = commanded_widths(robot, &bench, first_rise, received_count, &sent_frames);
+    for (frame, expected) in sent_frames.iter().zip(expected_widths) {
+        let widths = frame.all_widths();
+        assert_eq!(widths, Some(expected), "{robot_name}, {flood:?}: {frame:?}");
     }
 }
 

@@ -3,6 +3,7 @@
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 use lizard_host_tests::{FirmwareBench, robot};
+use lizard_robot::Robot;
 use simulated_uno::{Edge, Fidelity, most_pins_high};
 
 use crate::{
@@ -37,14 +38,11 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
 
 /// Returns the cycle of A1's first pulse since power-on. The bench must still hold all edges, so this function must be
 /// called before the bench runs for frames.
-pub fn first_pulse_cycle(bench: &FirmwareBench) -> u64 {
-    let edges = servo_edges(bench);
-    edges.first().expect("the robot stands").cycle
-}
 
 /// Returns the widths that the core computes for these frames if it receives only the first `received_count` bytes.
 /// `first_rise` is the cycle of A1's first pulse.
 pub fn commanded_widths(
+    robot: &Robot,
     bench: &FirmwareBench,
     first_rise: u64,
     received_count: usize,
@@ -52,7 +50,7 @@ pub fn commanded_widths(
 ) -> Vec<[u64; 4]> {
     let frames_before = ((frames[0].start - first_rise) / FRAME_CYCLES) as usize;
     let commands = core_run::play(
-        *robot().firmware(),
+        *robot.firmware(),
         &bench.uno.received_by_uno()[..received_count],
         first_rise,
         frames_before + frames.len(),
@@ -71,7 +69,7 @@ fn every_width_is_the_one_that_the_core_computes() {
             // main loop may read it before or after the tick, a new bench sends the line a millisecond later.
             let boot_and_command_after = |delay_ms| {
                 let mut bench = boot_standing(*fidelity);
-                let first_rise = first_pulse_cycle(&bench);
+                let first_rise = bench.first_pulse_cycle().expect("the robot stands");
                 bench.run_ms(delay_ms);
                 bench.say(&gait.command());
                 (bench, first_rise)
@@ -88,12 +86,9 @@ fn every_width_is_the_one_that_the_core_computes() {
             let frames = bench.run_for_frames(6 * FRAMES_PER_SECOND);
             assert_on_slot_grid(&bench, &frames);
             let received_count = bench.uno.received_by_uno().len();
-            for (frame, expected) in frames.iter().zip(commanded_widths(
-                &bench,
-                first_rise,
-                received_count,
-                &frames,
-            )) {
+            let expected_widths =
+                commanded_widths(robot(), &bench, first_rise, received_count, &frames);
+            for (frame, expected) in frames.iter().zip(expected_widths) {
                 assert_eq!(frame.widths(), expected, "{}: {frame:?}", gait.name());
             }
         }
@@ -107,7 +102,7 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
     run_in_both_simulations(|fidelity| {
         for flood in FLOODS {
             let mut bench = boot_standing(fidelity);
-            let first_rise = first_pulse_cycle(&bench);
+            let first_rise = bench.first_pulse_cycle().expect("the robot stands");
             bench.say("watch 1");
             bench.say(&first_moving_gait());
             let received_count = bench.uno.received_by_uno().len();
@@ -116,12 +111,9 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
             let frames = bench.run_for_frames(10 * FRAMES_PER_SECOND);
             let sent_count = bench.bytes().len() - sent_before;
             assert_on_slot_grid(&bench, &frames);
-            for (frame, expected) in frames.iter().zip(commanded_widths(
-                &bench,
-                first_rise,
-                received_count,
-                &frames,
-            )) {
+            let expected_widths =
+                commanded_widths(robot(), &bench, first_rise, received_count, &frames);
+            for (frame, expected) in frames.iter().zip(expected_widths) {
                 assert_eq!(frame.widths(), expected, "{flood:?}: {frame:?}");
             }
             let changes = frames
@@ -165,10 +157,8 @@ fn every_frame_is_counted_during_a_flood() {
         end_flood(&mut bench);
         bench.run_for_frames(0);
         let passed_frames = (bench.uno.cycle() - cycle) / FRAME_CYCLES;
-        let status_after = Status::read(&mut bench);
-        assert_eq!(
-            status_after.number("frames") - status_before.number("frames"),
-            passed_frames as f64
-        );
+        let counted_frames =
+            Status::read(&mut bench).number("frames") - status_before.number("frames");
+        assert_eq!(counted_frames, passed_frames as f64);
     });
 }

@@ -5,7 +5,7 @@ use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::pulses::{commanded_widths, first_pulse_cycle};
+use crate::pulses::commanded_widths;
 use crate::{boot_standing, first_moving_gait};
 
 /// Cycles from the start of one servo's pulse to the start of the next servo's pulse.
@@ -32,7 +32,7 @@ impl ReferenceRun {
 
     fn start_with(line: &str, fidelity: Fidelity) -> Self {
         let mut bench = boot_standing(fidelity);
-        let first_pulse_cycle = first_pulse_cycle(&bench);
+        let first_pulse_cycle = bench.first_pulse_cycle().expect("the robot stands");
         bench.say(line);
         let received_byte_count = bench.uno.received_by_uno().len();
         bench.run_ms(1000);
@@ -69,12 +69,8 @@ impl ReferenceRun {
             widths: [None; 4],
         };
         let frames = vec![silent_frame; count as usize];
-        commanded_widths(
-            &self.bench,
-            self.first_pulse_cycle,
-            self.received_byte_count,
-            &frames,
-        )
+        let (first_rise, count) = (self.first_pulse_cycle, self.received_byte_count);
+        commanded_widths(robot(), &self.bench, first_rise, count, &frames)
     }
 
     /// True if the simulation is simavr corrected to follow the data sheet.

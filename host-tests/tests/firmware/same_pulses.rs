@@ -5,10 +5,9 @@
 //! change of a robot's values or of the effect of a command also changes the digest; then replace the records with
 //! those that the failed test prints.
 
-use lizard_host::firmware::read_with_robot;
 use lizard_host::sim::frame::{FRAME_CYCLES, servo_pins};
 use lizard_host::sim::supplies;
-use lizard_host_tests::{FirmwareBench, root};
+use lizard_host_tests::{FirmwareBench, robot_named, root, text_of};
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
 
@@ -86,26 +85,16 @@ fn fits_beside_firmware(name: &str) -> bool {
 /// Runs a robot for ten minutes and returns the digest of all servo edges and their number.
 fn run_and_digest(name: &str) -> (u64, u64) {
     let frames = 600 * FRAMES_PER_SECOND;
-    let robot = Robot::load(root().join(format!("robots/{name}.toml")));
-    let robot = robot.unwrap_or_else(|error| panic!("{error}"));
-    let image = read_with_robot(&FirmwareBench::elf(), &robot);
-    let image = image.unwrap_or_else(|error| panic!("{error}; make firmware"));
-    let mut uno = Uno::with_image(image, Fidelity::DataSheet);
+    let robot = robot_named(name);
+    let mut uno = Uno::with_image(FirmwareBench::image_with(&robot), Fidelity::DataSheet);
     supplies::connect(&mut uno, &robot);
     let pins = servo_pins(&robot);
     // Times count from the first pulse, because the time until then depends on the code.
-    let has_risen = |uno: &Uno| uno.is_high(pins[0]);
-    assert!(
-        uno.run_until(500 * CYCLES_PER_MS, 1_000, has_risen),
-        "no pulse"
-    );
+    let has_risen = uno.run_until(500 * CYCLES_PER_MS, 1_000, |uno| uno.is_high(pins[0]));
+    assert!(has_risen, "no pulse");
     let is_a1_rise = |edge: &&Edge| edge.is_rising && edge.pin == pins[0];
-    let first_rise = uno
-        .edges()
-        .iter()
-        .find(is_a1_rise)
-        .expect("A1 has risen")
-        .cycle;
+    let edges = uno.edges();
+    let first_rise = edges.iter().find(is_a1_rise).expect("A1 has risen").cycle;
     println!(
         "{name}: the first pulse begins after {:.3} ms",
         first_rise as f64 / CYCLES_PER_MS as f64
@@ -144,9 +133,7 @@ fn run_and_digest(name: &str) -> (u64, u64) {
             }
         }
     }
-    let sent_bytes = uno.transmitted();
-    let text: Vec<u8> = sent_bytes.iter().map(|sent| sent.byte).collect();
-    let text = String::from_utf8_lossy(&text);
+    let text = text_of(&uno.transmitted());
     let answer_count = text.lines().filter(|line| !line.starts_with('#')).count();
     assert!(
         (command_count - 1..=command_count).contains(&answer_count),

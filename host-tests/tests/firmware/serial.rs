@@ -33,17 +33,11 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
             &padded_line,
         ];
         for _ in 0..600 {
-            say_expecting_ok(
-                &mut bench,
-                rng.choice(&lines).expect("the list is not empty"),
-            );
+            say_expecting_ok(&mut bench, lines[rng.usize(..lines.len())]);
         }
         say_expecting_ok(&mut bench, "watch 0");
         let status = Status::read(&mut bench);
-        assert_eq!(
-            (status.number("rx_lost"), status.number("late")),
-            (0.0, 0.0)
-        );
+        assert_eq!(status.numbers(["rx_lost", "late"]), [0.0; 2]);
         assert_eq!(bench.uno.overruns(), 0);
     });
 }
@@ -59,13 +53,7 @@ fn the_longest_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
             .uno
             .send(format!("stand{}\n", " ".repeat(57)).as_bytes());
         bench.run_ms(300);
-        let last_line = bench
-            .lines()
-            .last()
-            .expect("the robot has answered")
-            .text
-            .clone();
-        assert_eq!(last_line, "ok stand");
+        assert_eq!(bench.last_text(), "ok stand");
         assert!(bench.lines().len() > line_count + 2);
         assert_eq!(Status::read(&mut bench).number("rx_lost"), 0.0);
     });
@@ -154,14 +142,13 @@ fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
         assert_eq!(digits.len() < 5, was_lost, "{round}: {answer}");
         overrun_count += usize::from(was_lost);
         let mut sent_digits = b"01234".iter();
-        let is_in_order = digits
-            .bytes()
-            .all(|digit| sent_digits.any(|sent_digit| *sent_digit == digit));
+        let was_sent_next = |digit| sent_digits.any(|sent_digit| *sent_digit == digit);
+        let is_in_order = digits.bytes().all(was_sent_next);
         assert!(is_in_order, "{round}: {answer}");
         let lost_count = Status::read(&mut bench).number("rx_lost");
+        let is_counted = lost_count > lost_before;
         assert_eq!(
-            lost_count > lost_before,
-            was_lost,
+            is_counted, was_lost,
             "{round}: {lost_count} bytes counted as lost"
         );
         lost_before = lost_count;
@@ -206,15 +193,11 @@ fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
             bench.uno.send(&line[index + 1..]);
             bench.uno.send(b"\n");
             bench.run_ms(20);
-            let last_line = bench.lines().last().map(|line| line.text.clone());
             let refusal = "err 1 the line came garbled, send it again";
-            assert_eq!(last_line.as_deref(), Some(refusal), "byte {index}");
+            assert_eq!(bench.last_text(), refusal, "byte {index}");
         }
         let status = Status::read(&mut bench);
-        assert_eq!(
-            (status.number("speed"), status.number("rx_lost")),
-            (100.0, 8.0)
-        );
+        assert_eq!(status.numbers(["speed", "rx_lost"]), [100.0, 8.0]);
         assert_eq!(bench.say("speed 90"), "ok speed 90");
     });
 }

@@ -2,14 +2,13 @@
 //! at the LED, in an answer, and before the loop sleeps.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, group_frames, servo_pins};
-use lizard_host_tests::{FirmwareBench, robot};
+use lizard_host_tests::{FirmwareBench, gait_commands, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::measurements::{assert_no_leap_in_gait, recorded_pulses};
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
-    Status, boot_and_command, boot_standing, for_each_in_parallel, gait_commands,
-    run_in_both_simulations,
+    Status, boot_and_command, boot_standing, for_each_in_parallel, run_in_both_simulations,
 };
 
 /// Upper bound of the cycles that the main loop takes, after it has computed a frame, to hand the frame over and to

@@ -1,13 +1,13 @@
 //! Tests of `stop`, `rest` and waking: the lines are sent at many moments, and the pulses are checked frame by frame.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
-use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
+use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, gait_commands, robot};
 use lizard_robot::Servo;
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::{
-    boot_and_command, boot_standing, first_moving_gait, for_each_in_parallel, gait_commands,
-    neutral_widths, pose_command, run_in_both_simulations, widths,
+    boot_and_command, boot_standing, first_moving_gait, for_each_in_parallel, neutral_widths,
+    pose_command, run_in_both_simulations, widths,
 };
 
 /// Cycles between the interruptions of a gait. Not a multiple of a frame, so that the interruptions cover many

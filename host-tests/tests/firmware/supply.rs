@@ -104,10 +104,7 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
         },
     );
     let status = Status::read(&mut bench);
-    assert_eq!(
-        (status.text("gait"), status.text("fault")),
-        ("rest", "supply")
-    );
+    assert_eq!(status.texts(["gait", "fault"]), ["rest", "supply"]);
     assert!(run_for_pulses(&mut bench, 200).iter().all(Vec::is_empty));
     let flashes = count_flashes(&mut bench, 10);
     assert!(
@@ -184,10 +181,7 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
         "supply",
         "the fault ends before the robot moves"
     );
-    assert_eq!(
-        bench.say(&first_moving_gait()),
-        format!("ok {}", first_moving_gait())
-    );
+    bench.expect_ok(&first_moving_gait());
     bench.run_ms(500);
     assert_eq!(Status::read(&mut bench).text("fault"), "none");
     assert_eq!(bench.say("save"), "ok save");

@@ -2,7 +2,7 @@
 //! correctly.
 
 use lizard_host_tests::FirmwareBench;
-use simulated_uno::{CYCLES_PER_MS, Fidelity, ResetCause};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, ResetCause, Uno};
 
 use crate::measurements::{
     count_flashes, measure_widths, power_cycle, recorded_pulses, run_for_pulses, slew_limit,
@@ -33,11 +33,9 @@ fn hold_pose() -> (FirmwareBench, [u64; 4]) {
 fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
     let (start, resets_before) = (bench.uno.cycle(), bench.uno.watchdog_resets());
     let limit_cycles = MAX_TIMEOUT_MS * CYCLES_PER_MS;
+    let was_reset = |uno: &Uno| uno.watchdog_resets() > resets_before;
     assert!(
-        bench
-            .uno
-            .run_until(limit_cycles, 1_000, |uno| uno.watchdog_resets()
-                > resets_before),
+        bench.uno.run_until(limit_cycles, 1_000, was_reset),
         "no reset"
     );
     // The restarted program must not be stalled.
@@ -58,34 +56,19 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
         bench.uno.run_ms(300);
         for (servo, pulses) in recorded_pulses(&bench).iter().enumerate() {
             for pulse in pulses {
-                assert_eq!(
-                    pulse.width,
-                    widths[servo],
-                    "A{} in round {round}",
-                    servo + 1
-                );
+                let name = servo + 1;
+                assert_eq!(pulse.width, widths[servo], "A{name} in round {round}");
             }
-            let gap = pulses
-                .windows(2)
-                .map(|pair| pair[1].start - pair[0].start)
-                .max();
-            assert!(
-                gap.is_some_and(|gap| gap < 200 * CYCLES_PER_MS),
-                "no pulse for {gap:?} cycles"
-            );
+            let gaps = pulses.windows(2).map(|pair| pair[1].start - pair[0].start);
+            let gap = gaps.max().expect("the servo has pulses");
+            assert!(gap < 200 * CYCLES_PER_MS, "no pulse for {gap} cycles");
         }
         let status = Status::read(&mut bench);
-        assert_eq!(
-            (status.text("reset"), status.text("fault")),
-            ("watchdog", "watchdog")
-        );
+        assert_eq!(status.texts(["reset", "fault"]), ["watchdog"; 2]);
         assert_eq!(status.number("resets"), (round + 1) as f64);
     }
-    let is_reported = bench
-        .lines()
-        .iter()
-        .any(|line| line.text == "# fault: the program hung and began anew");
-    assert!(is_reported);
+    let fault_line = "# fault: the program hung and began anew".to_owned();
+    assert!(bench.texts_since(0).contains(&fault_line));
 }
 
 #[test]
@@ -110,10 +93,8 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
         }
         assert_eq!(Status::read(&mut bench).text("gait"), "stop");
         let flashes = count_flashes(&mut bench, 12);
-        assert!(
-            flashes.len() >= 3 && flashes.iter().all(|count| *count == 4),
-            "{flashes:?}"
-        );
+        let are_four = flashes.iter().all(|count| *count == 4);
+        assert!(flashes.len() >= 3 && are_four, "{flashes:?}");
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(1500);
         assert_eq!(Status::read(&mut bench).text("fault"), "none");
@@ -143,11 +124,8 @@ fn disabled_interrupts_are_detected_and_reported_as_a_watchdog_reset() {
     let (mut bench, widths) = hold_pose();
     // SREG's I bit.
     let sreg = 0x5f;
-    assert!(
-        bench
-            .uno
-            .run_until(CYCLES_PER_MS, 1, |uno| uno.peek(sreg) & 0x80 == 0)
-    );
+    let is_blocked = |uno: &Uno| uno.peek(sreg) & 0x80 == 0;
+    assert!(bench.uno.run_until(CYCLES_PER_MS, 1, is_blocked));
     bench.uno.block_interrupts(1_000 * CYCLES_PER_MS);
     run_until_reset(&mut bench);
     bench.uno.run_ms(100);
@@ -192,22 +170,14 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.set_supply_mv(5_000.0);
         // The boot loader clears the chip's record of the cause, and the RAM has kept its contents, so the firmware
         // cannot distinguish the dip from an external reset.
-        let dip_cause = if has_boot_loader {
-            "external"
-        } else {
-            "brownout"
-        };
+        let dip_cause = ["brownout", "external"][usize::from(has_boot_loader)];
         assert_reported(&mut bench, dip_cause, 3.0);
         bench.uno.reset();
         assert_reported(&mut bench, "external", 4.0);
         power_cycle(&mut bench);
         assert_reported(&mut bench, "power", 0.0);
-        let causes: Vec<ResetCause> = bench
-            .uno
-            .reset_events()
-            .iter()
-            .map(|event| event.cause)
-            .collect();
+        let events = bench.uno.reset_events();
+        let causes: Vec<ResetCause> = events.iter().map(|event| event.cause).collect();
         assert_eq!(
             causes,
             [
@@ -243,10 +213,8 @@ fn power_on_is_recognised_whatever_noise_the_ram_holds() {
         bench.uno.set_noise_seed(seed);
         power_cycle(&mut bench);
         let status = Status::read(&mut bench);
-        assert_eq!(
-            (status.text("reset"), status.number("resets")),
-            ("power", 0.0)
-        );
+        assert_eq!(status.text("reset"), "power");
+        assert_eq!(status.number("resets"), 0.0);
         assert_eq!(status.pose(), neutral_angles());
     }
 }
@@ -323,19 +291,13 @@ fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
     assert!(pulses.iter().all(Vec::is_empty), "{pulses:?}");
     bench.uno.run_ms(2_500);
     assert_eq!(measure_widths(&mut bench), neutral_widths());
-    let is_reported = bench
-        .lines()
-        .iter()
-        .any(|line| line.text == "# boot: stand");
-    assert!(is_reported);
+    assert!(bench.texts_since(0).contains(&"# boot: stand".to_owned()));
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
     let pulses = run_for_pulses(&mut bench, 5_000);
-    assert!(
-        pulses.iter().all(Vec::is_empty),
-        "a byte has not cancelled `boot`"
-    );
+    let is_silent = pulses.iter().all(Vec::is_empty);
+    assert!(is_silent, "a byte has not cancelled `boot`");
 }

@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use lizard_host_tests::avr_gcc::{assemble, compile_to_object, link};
+use lizard_host_tests::avr_gcc::{assemble, compile_to_object, link, ram_address, shrink};
 use lizard_host_tests::root;
+use lizard_linker::ROUTINES;
 use lizard_linker::frame::FIRST_REGISTERS;
-use lizard_linker::{ROUTINES, shrink};
 use simulated_uno::{Fidelity, Image, Uno};
 
 mod random_programs;
@@ -79,11 +79,6 @@ int main(void) {
 }
 "#;
 
-/// Returns the address of a variable in RAM.
-fn ram_address(image: &Image, name: &str) -> u16 {
-    (image.symbol(name).expect("the variable exists").address - 0x80_0000) as u16
-}
-
 /// Runs the program. Returns its results and the depth of its stack.
 fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
     let [done_address, results_address] = ["done", "results"].map(|name| ram_address(image, name));
@@ -94,28 +89,23 @@ fn run_for_results(image: &Image) -> (Vec<u8>, u16) {
         1,
         "the program has not ended, or the timer has interrupted it too rarely"
     );
-    let bytes = (0..160)
-        .map(|offset| uno.peek(results_address + offset))
-        .collect();
+    let addresses = results_address..results_address + 160;
+    let bytes = addresses.map(|address| uno.peek(address)).collect();
     (bytes, uno.stack_used())
 }
 
 #[test]
 fn a_program_computes_the_same_with_shared_prologues_and_epilogues() {
     let object = compile_to_object(PROGRAM).expect("the program compiles");
-    let (shrunk, savings) = shrink(&object)
-        .expect("the object is valid")
-        .expect("the object is for an AVR");
+    let (shrunk, savings) = shrink(&object);
     assert!(savings.frames > 100, "{savings:?}");
     // In `jumps`, the linker replaces only the first branch over a jump, which saves 2 bytes.
     assert_eq!(savings.branches, 2, "{savings:?}");
     let plain_image = link("", &object).expect("the object links");
     let shrunk_image = link(ROUTINES, &shrunk).expect("the rewritten object links");
     assert!(shrunk_image.symbol("__frame_save_2").is_some());
-    let ((plain_results, plain_depth), (shrunk_results, shrunk_depth)) = (
-        run_for_results(&plain_image),
-        run_for_results(&shrunk_image),
-    );
+    let (plain_results, plain_depth) = run_for_results(&plain_image);
+    let (shrunk_results, shrunk_depth) = run_for_results(&shrunk_image);
     assert_eq!(plain_results, shrunk_results);
     assert!(plain_results.iter().any(|byte| *byte != 0));
     // Ten stack frames of `recurse` exist at once, and each may save one more register.
@@ -147,23 +137,19 @@ int main(void) { result = return_last(1, 2, 3, 4, 5, 0x1234); done = 1; for (;;)
 #[test]
 fn an_argument_on_the_stack_is_read_where_the_caller_put_it() {
     let object = compile_to_object(STACK_ARGUMENT).expect("the program compiles");
-    let shrunk = shrink(&object).expect("the object is valid");
-    let image =
-        link(ROUTINES, &shrunk.expect("the object is for an AVR").0).expect("the object links");
+    let image = link(ROUTINES, &shrink(&object).0).expect("the object links");
     let [done_address, result_address] = ["done", "result"].map(|name| ram_address(&image, name));
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.run_ms(10);
     assert_eq!(uno.peek(done_address), 1);
-    assert_eq!(
-        [uno.peek(result_address), uno.peek(result_address + 1)],
-        [0x34, 0x12]
-    );
+    let result_bytes = [uno.peek(result_address), uno.peek(result_address + 1)];
+    assert_eq!(result_bytes, [0x34, 0x12]);
 }
 
 #[test]
 fn callers_do_not_rely_on_registers_that_a_shared_prologue_changes() {
-    let flags = fs::read_to_string(root().join(".cargo/config.toml"))
-        .expect(".cargo/config.toml is readable");
+    let flags = fs::read_to_string(root().join(".cargo/config.toml"));
+    let flags = flags.expect(".cargo/config.toml is readable");
     let passes = flags.lines().find(|line| line.contains("\"-Cllvm-args="));
     let passes = passes.expect(".cargo/config.toml lists the LLVM passes");
     assert!(!passes.contains("ipra"), "{passes}");
@@ -236,35 +222,19 @@ fn every_shared_prologue_and_epilogue_restores_registers_and_stack() {
             let image = assemble(&frame_program(first_register, room_bytes));
             let mut uno = Uno::with_image(image, Fidelity::DataSheet);
             uno.run_ms(10);
-            assert_eq!(
-                uno.peek(0x145),
-                1,
-                "the program has not ended: {first_register} {room_bytes}"
-            );
+            let case = format!("{first_register} {room_bytes}");
+            assert_eq!(uno.peek(0x145), 1, "the program has not ended: {case}");
             for register in CALL_SAVED_REGISTERS {
                 let value = uno.peek(0x100 + u16::from(register));
-                assert_eq!(
-                    value,
-                    register + 100,
-                    "r{register}: {first_register} {room_bytes}"
-                );
+                assert_eq!(value, register + 100, "r{register}: {case}");
             }
-            assert_eq!(
-                [uno.peek(0x140), uno.peek(0x141)],
-                [0xff, 0x08],
-                "{first_register} {room_bytes}"
-            );
+            let stack_pointer = [uno.peek(0x140), uno.peek(0x141)];
+            assert_eq!(stack_pointer, [0xff, 0x08], "{case}");
             assert_eq!(uno.peek(0x142), 0, "r1");
-            assert_eq!(
-                uno.peek(0x143),
-                0,
-                "r28 differs from the stack pointer: {first_register} {room_bytes}"
-            );
-            assert_eq!(
-                uno.peek(0x144),
-                1,
-                "the timer has not interrupted the program"
-            );
+            let difference_count = uno.peek(0x143);
+            assert_eq!(difference_count, 0, "r28 is not the stack pointer: {case}");
+            let was_interrupted = uno.peek(0x144);
+            assert_eq!(was_interrupted, 1, "the timer has not interrupted: {case}");
         }
     }
 }

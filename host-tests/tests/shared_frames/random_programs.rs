@@ -8,12 +8,10 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_host_tests::avr_gcc::{compile_to_object, link};
+use lizard_host_tests::avr_gcc::{compile_to_object, link, ram_address, shrink};
 use lizard_host_tests::scaled_count;
-use lizard_linker::{ROUTINES, shrink};
+use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
-
-use crate::ram_address;
 
 /// The number of functions of a program. No more functions fit into 32 KB.
 const FUNCTION_COUNT: usize = 40;
@@ -65,11 +63,9 @@ fn random_function(rng: &mut Rng, signatures: &mut Vec<Vec<&'static str>>) -> St
             types.push(name);
         }
     }
-    let parameters = types.iter().enumerate();
-    let parameters: Vec<String> = parameters
-        .map(|(index, name)| format!("{name} p{index}"))
-        .collect();
     let mut variables: Vec<String> = (0..types.len()).map(|index| format!("p{index}")).collect();
+    let parameters = types.iter().zip(&variables);
+    let parameters: Vec<String> = parameters.map(|(name, p)| format!("{name} {p}")).collect();
     let arguments = variables.clone();
     let [buffer_size, limit] = [rng.usize(3..30), rng.usize(..60_000)];
     let last_index = buffer_size - 1;
@@ -172,14 +168,10 @@ fn run_for_return_values(image: &Image) -> Vec<[u8; 4]> {
 fn find_differences(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = compile_to_object(&random_program(&mut Rng::with_seed(seed))).ok()?;
     let plain_image = link("", &object).ok()?;
-    let (object, savings) = shrink(&object)
-        .expect("the object is valid")
-        .expect("the object is for an AVR");
+    let (object, savings) = shrink(&object);
     let shrunk_image = link(ROUTINES, &object).expect("the rewritten object links");
-    let [plain_results, shrunk_results] = [
-        run_for_return_values(&plain_image),
-        run_for_return_values(&shrunk_image),
-    ];
+    let [plain_results, shrunk_results] =
+        [plain_image, shrunk_image].map(|image| run_for_return_values(&image));
     let differing_functions =
         (0..FUNCTION_COUNT).filter(|&number| plain_results[number] != shrunk_results[number]);
     Some((differing_functions.collect(), savings.frames > 0))
@@ -198,10 +190,10 @@ fn random_functions_with_arguments_on_the_stack_compute_the_same() {
     let thread_count = thread::available_parallelism().map_or(1, usize::from);
     let tried_programs: Vec<_> = thread::scope(|scope| {
         let workers: Vec<_> = (0..thread_count).map(|_| scope.spawn(run_worker)).collect();
-        let results = workers.into_iter().map(|worker| worker.join());
-        results
-            .flat_map(|result| result.expect("no thread panics"))
-            .collect()
+        let results = workers
+            .into_iter()
+            .map(|worker| worker.join().expect("no thread panics"));
+        results.flatten().collect()
     });
     for (seed, (differing_functions, is_rewritten)) in &tried_programs {
         assert!(
@@ -210,9 +202,6 @@ fn random_functions_with_arguments_on_the_stack_compute_the_same() {
         );
         assert!(is_rewritten, "program {seed}: no function was rewritten");
     }
-    assert!(
-        tried_programs.len() as u64 >= seed_count * 9 / 10,
-        "{}",
-        tried_programs.len()
-    );
+    let tried_count = tried_programs.len() as u64;
+    assert!(tried_count >= seed_count * 9 / 10, "{tried_count}");
 }

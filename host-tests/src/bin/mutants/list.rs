@@ -63,11 +63,16 @@ pub fn read(list: &str) -> Result<Vec<Mutant>, String> {
         }
         if line.is_empty() {
             if let Some(mutant) = open_entry.take() {
-                if mutant.file.is_empty() || mutant.description.is_empty() || mutant.old.is_empty()
-                {
-                    let line_number = mutant.line;
+                let Mutant {
+                    line,
+                    file,
+                    description,
+                    old,
+                    ..
+                } = &mutant;
+                if [file, description, old].into_iter().any(String::is_empty) {
                     return Err(format!(
-                        "line {line_number}: an entry needs a file, a description and an old text"
+                        "line {line}: an entry needs a file, a description and an old text"
                     ));
                 }
                 mutants.push(mutant);
@@ -113,21 +118,24 @@ mod tests {
         let list =
             "# a list\n\nfile a.rs\nwrong it is two\ntest one\n-let a = 1;\n-\n+let a = 2;\n";
         let mutants = read(list).expect("the list is valid");
-        assert_eq!(mutants.len(), 1);
+        let [mutant] = &mutants[..] else {
+            panic!("{mutants:?}");
+        };
         assert_eq!(
-            (mutants[0].line, mutants[0].test_filter.as_deref()),
+            (mutant.line, mutant.test_filter.as_deref()),
             (3, Some("one"))
         );
-        let changed_text = mutants[0].apply("let b = 0;\nlet a = 1;\n");
+        let changed_text = mutant.apply("let b = 0;\nlet a = 1;\n");
         assert_eq!(changed_text.as_deref(), Ok("let b = 0;\nlet a = 2;"));
-        let missing_error = mutants[0]
-            .apply("let a = 3;\n")
-            .expect_err("a missing old text must be refused");
-        assert!(missing_error.contains("missing"), "{missing_error}");
-        let duplicate_error = mutants[0]
-            .apply("let a = 1;\nlet a = 1;\n\n")
-            .expect_err("an ambiguous old text must be refused");
-        assert!(duplicate_error.contains("2 times"), "{duplicate_error}");
+        for (text, reason) in [
+            ("let a = 3;\n", "missing"),
+            ("let a = 1;\nlet a = 1;\n\n", "2 times"),
+        ] {
+            let error = mutant
+                .apply(text)
+                .expect_err("the old text must occur once");
+            assert!(error.contains(reason), "{error}");
+        }
     }
 
     #[test]

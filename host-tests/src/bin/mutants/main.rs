@@ -24,7 +24,7 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
 use list::Mutant;
-use lizard_host_tests::read_number;
+use lizard_host_tests::{read_number, root};
 
 /// Time after which a test run counts as hanging, s.
 const TIMEOUT_S: u32 = 1_800;
@@ -32,11 +32,6 @@ const TIMEOUT_S: u32 = 1_800;
 /// Processor time after which a test program counts as hanging, s. A test program that does not hang takes at most 90
 /// s, even on a busy machine.
 const CPU_TIMEOUT_S: u32 = 240;
-
-/// The root of the repository.
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 /// The outcome of the tests with a mistake in the code.
 enum Outcome {
@@ -50,10 +45,9 @@ enum Outcome {
 
 fn main() -> ExitCode {
     let filters: Vec<String> = std::env::args().skip(1).collect();
+    let seed = read_number("SEED").unwrap_or(1);
     let outcome = match read_number("SAMPLE") {
-        Some(count) => {
-            try_generated_mistakes(&filters, count as usize, read_number("SEED").unwrap_or(1))
-        }
+        Some(count) => try_generated_mistakes(&filters, count as usize, seed),
         None => try_listed_mistakes(&filters),
     };
     match outcome {
@@ -75,14 +69,10 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
             mutants.extend(fresh::mutants_in(file, &read_text(&root().join(file))?));
         }
     }
-    println!(
-        "seed {seed}: {count} of {} generated mistakes",
-        mutants.len()
-    );
-    let unchanged = Mutant::unchanged(
-        "crates/core/src/lib.rs",
-        read_text(&root().join("crates/core/src/lib.rs"))?,
-    );
+    let generated_count = mutants.len();
+    println!("seed {seed}: {count} of {generated_count} generated mistakes");
+    let file = "crates/core/src/lib.rs";
+    let unchanged = Mutant::unchanged(file, read_text(&root().join(file))?);
     if !matches!(scratch.judge(&unchanged)?, Outcome::Missed) {
         return Err("a test fails or hangs without any mistake".into());
     }
@@ -102,21 +92,15 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
             Outcome::Missed => "MISSED".to_owned(),
         };
         println!("{}, {}: {outcome}", mutant.file, mutant.description);
-        let kind_index = usize::from(!fresh::affects_motion(&mutant.file));
-        let [caught, tried] = &mut tally[kind_index];
+        let [caught, tried] = &mut tally[usize::from(!fresh::affects_motion(&mutant.file))];
         *caught += usize::from(outcome != "MISSED");
         *tried += 1;
     }
-    for ([caught, tried], code_kind) in tally
-        .into_iter()
-        .zip(["that move a servo or a saved value", "in text"])
-    {
+    let code_kinds = ["that move a servo or a saved value", "in text"];
+    for ([caught, tried], code_kind) in tally.into_iter().zip(code_kinds) {
         let (min, max) = fresh::wilson_interval(caught, tried);
-        println!(
-            "mistakes {code_kind}: {caught} of {tried} caught, {:.1} to {:.1} % (Wilson, 95 %)",
-            100.0 * min,
-            100.0 * max
-        );
+        let interval = format!("{:.1} to {:.1} % (Wilson, 95 %)", 100.0 * min, 100.0 * max);
+        println!("mistakes {code_kind}: {caught} of {tried} caught, {interval}");
     }
     Ok(tally.iter().map(|[caught, tried]| tried - caught).sum())
 }
@@ -124,9 +108,10 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
 /// Tries the listed mistakes. Returns the number of mistakes that no test notices.
 fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
     let list = read_list()?;
-    let is_selected = |mutant: &&Mutant| {
-        let matches_part =
-            |part: &String| mutant.file.contains(part) || mutant.description.contains(part);
+    let is_selected = |Mutant {
+                           file, description, ..
+                       }: &&Mutant| {
+        let matches_part = |part: &String| file.contains(part) || description.contains(part);
         filters.is_empty() || filters.iter().any(matches_part)
     };
     let list: Vec<&Mutant> = list.iter().filter(is_selected).collect();
@@ -142,39 +127,32 @@ fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
     let mut missed_mutants = Vec::new();
     for mutant in &list {
         let start = Instant::now();
-        let outcome = scratch.judge(mutant)?;
-        let outcome = match &outcome {
+        let Mutant {
+            file, description, ..
+        } = mutant;
+        let outcome = match scratch.judge(mutant)? {
             Outcome::Caught(test) => format!("caught by {test}"),
             Outcome::Missed => {
                 missed_mutants.push(mutant);
                 "MISSED".to_owned()
             }
             Outcome::DoesNotCompile => {
-                return Err(format!(
-                    "{}: the mistake does not compile",
-                    mutant.description
-                ));
+                return Err(format!("{description}: the mistake does not compile"));
             }
         };
         let seconds = start.elapsed().as_secs();
-        println!(
-            "{}: {}: {outcome} ({seconds} s)",
-            mutant.file, mutant.description
-        );
+        println!("{file}: {description}: {outcome} ({seconds} s)");
     }
-    println!(
-        "{} mistakes, {} caught, {} missed",
-        list.len(),
-        list.len() - missed_mutants.len(),
-        missed_mutants.len()
-    );
-    for mutant in &missed_mutants {
-        println!(
-            "missed: mutants.txt, line {}: {}",
-            mutant.line, mutant.description
-        );
+    let (count, missed_count) = (list.len(), missed_mutants.len());
+    let caught_count = count - missed_count;
+    println!("{count} mistakes, {caught_count} caught, {missed_count} missed");
+    for Mutant {
+        line, description, ..
+    } in missed_mutants
+    {
+        println!("missed: mutants.txt, line {line}: {description}");
     }
-    Ok(missed_mutants.len())
+    Ok(missed_count)
 }
 
 /// Reads the list of mistakes and checks the old texts of all entries, so that a list that is out of date is an error
@@ -282,10 +260,7 @@ impl ScratchTree {
     /// Runs the tests of a package of the copy: first those that should notice the mistake, then all. For a generated
     /// mistake, also runs the tests of the model checker and of the running firmware.
     fn judge_in_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
-        if !self
-            .cargo_test(package, &["--no-run"])?
-            .is_some_and(|(has_passed, _)| has_passed)
-        {
+        if !matches!(self.cargo_test(package, &["--no-run"])?, Some((true, _))) {
             return Ok(Outcome::DoesNotCompile);
         }
         let is_generated = mutant.is_generated;
@@ -309,10 +284,9 @@ impl ScratchTree {
                 Some(_) => {}
             }
         }
-        if is_generated {
-            self.judge_in_firmware(mutant)
-        } else {
-            Ok(Outcome::Missed)
+        match is_generated {
+            true => self.judge_in_firmware(mutant),
+            false => Ok(Outcome::Missed),
         }
     }
 
@@ -393,11 +367,8 @@ fn run_limited(
 /// Returns the names of the tests that failed, from the output of the test harness.
 fn failed_tests_in(output_text: &str) -> Vec<String> {
     let failed_name_of = |line: &str| {
-        Some(
-            line.strip_prefix("test ")?
-                .strip_suffix(" ... FAILED")?
-                .to_owned(),
-        )
+        let name = line.strip_prefix("test ")?.strip_suffix(" ... FAILED")?;
+        Some(name.to_owned())
     };
     output_text.lines().filter_map(failed_name_of).collect()
 }
