@@ -37,16 +37,18 @@ fn count_written_lines(robot: &RunningRobot) -> usize {
     robot.board.transmitter.text.lines().count()
 }
 
+/// Counts the lines that the robot has written and the bytes that it has not read.
+fn written_and_unread(robot: &RunningRobot) -> (usize, usize) {
+    (count_written_lines(robot), robot.board.unread_count())
+}
+
 #[test]
 fn a_tick_has_priority_over_output_and_output_over_input() {
     let mut robot = start_robot(7, "speed 50\r");
     robot.board.tick();
     assert!(run_step(&mut robot));
     assert!(robot.board.is_frame_pending());
-    assert_eq!(
-        (count_written_lines(&robot), robot.board.unread_count()),
-        (0, 9)
-    );
+    assert_eq!(written_and_unread(&robot), (0, 9));
     assert!(run_step(&mut robot));
     assert!(robot.board.transmitter.text.starts_with("# lizard "));
     assert_eq!(count_written_lines(&robot), 1, "one line at a time");
@@ -69,17 +71,11 @@ fn nothing_is_written_without_room_for_the_longest_line_but_frames_continue() {
     let queued_bytes = 255 - u64::from(MAX_OUTPUT_LINE_BYTES) + 1;
     robot.board.transmitter.queue_bytes(queued_bytes);
     assert_eq!(robot.main.step(&mut robot.board), Step::Idle(0));
-    assert_eq!(
-        (count_written_lines(&robot), robot.board.unread_count()),
-        (0, 9)
-    );
+    assert_eq!(written_and_unread(&robot), (0, 9));
     robot.board.tick();
     assert!(run_step(&mut robot));
     assert_eq!(robot.main.step(&mut robot.board), Step::Idle(1));
-    assert_eq!(
-        (count_written_lines(&robot), robot.board.unread_count()),
-        (0, 9)
-    );
+    assert_eq!(written_and_unread(&robot), (0, 9));
     robot.board.transmitter = Transmitter::default();
     robot.settle();
     let text = &robot.board.transmitter.text;

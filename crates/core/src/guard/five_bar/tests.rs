@@ -18,15 +18,7 @@ fn any_five_bar() -> impl Strategy<Value = kinematics::FiveBar> {
         any_coupler(),
         any_crank(),
     )
-        .prop_map(
-            |(base, left_crank, left_coupler, right_coupler, right_crank)| kinematics::FiveBar {
-                base,
-                left_crank_length: left_crank,
-                left_coupler_length: left_coupler,
-                right_coupler_length: right_coupler,
-                right_crank_length: right_crank,
-            },
-        );
+        .prop_map(|lengths| kinematics::FiveBar::new(lengths.into()));
     (unequal_bars, 0u8..3)
         .prop_map(|(five_bar, variant)| {
             let right_coupler = match variant {
@@ -98,7 +90,7 @@ proptest! {
 /// trials.
 #[test]
 fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
-    for ([base, left_crank, left_coupler, right_coupler, right_crank], angles, known_error) in [
+    for (lengths, angles, known_error) in [
         (
             [
                 85.13013589423028,
@@ -122,13 +114,7 @@ fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
             0.0089,
         ),
     ] {
-        let five_bar = kinematics::FiveBar {
-            base,
-            left_crank_length: left_crank,
-            left_coupler_length: left_coupler,
-            right_coupler_length: right_coupler,
-            right_crank_length: right_crank,
-        };
+        let five_bar = kinematics::FiveBar::new(lengths);
         let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
         let angles = angles.map(Angle);
         let actual = margins_of(&sample, angles[0], angles[1]);
@@ -151,13 +137,7 @@ fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
 fn rounding_does_not_bias_the_type_2_margin_where_few_bits_are_left() {
     // The crank tips are close and the couplers long, so the squared distance is small and its rounding relatively
     // large.
-    let five_bar = kinematics::FiveBar {
-        base: 20.0,
-        left_crank_length: 30.0,
-        left_coupler_length: 126.0,
-        right_coupler_length: 126.0,
-        right_crank_length: 30.0,
-    };
+    let five_bar = kinematics::FiveBar::new([20.0, 30.0, 126.0, 126.0, 30.0]);
     let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
     let (mut error_sum, mut count) = (0.0, 0.0);
     for left in (13_000..18_000).step_by(7) {
@@ -177,13 +157,7 @@ fn rounding_does_not_bias_the_type_2_margin_where_few_bits_are_left() {
 
 #[test]
 fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
-    let five_bar = kinematics::FiveBar {
-        base: 20.0,
-        left_crank_length: 30.0,
-        left_coupler_length: 40.0,
-        right_coupler_length: 35.0,
-        right_crank_length: 30.0,
-    };
+    let five_bar = kinematics::FiveBar::new([20.0, 30.0, 40.0, 35.0, 30.0]);
     let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
     let margins_at = |left, right| {
         let [left, right] = [left, right].map(Angle::from_centideg);
