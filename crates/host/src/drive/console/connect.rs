@@ -112,7 +112,10 @@ impl BoardFinder {
     /// Fails if there is no board, there are several, or the port cannot be opened.
     pub fn open(&self) -> Result<Connection, Failure> {
         let (port, name) = match &self.port {
-            Some(port) => (port.clone(), self.describe_port(port)),
+            Some(port) if self.is_simulated() => {
+                (port.clone(), format!("{port} (a simulated UNO)"))
+            }
+            Some(port) => (port.clone(), port.clone()),
             None => {
                 let port = find::choose_port(&find::usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
@@ -145,19 +148,6 @@ impl BoardFinder {
         #[cfg(not(all(feature = "simulator", target_os = "linux")))]
         let is_simulated = false;
         is_simulated
-    }
-
-    #[cfg(all(feature = "simulator", target_os = "linux"))]
-    fn describe_port(&self, port: &str) -> String {
-        match self.simulated_board {
-            Some(_) => format!("{port} (a simulated UNO)"),
-            None => port.to_owned(),
-        }
-    }
-
-    #[cfg(not(all(feature = "simulator", target_os = "linux")))]
-    fn describe_port(&self, port: &str) -> String {
-        port.to_owned()
     }
 }
 

@@ -83,21 +83,17 @@ impl UsbPort {
 /// # Errors
 /// Fails if there is no such port, or more than one.
 pub fn choose_port(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, FindError> {
-    let uno_ports = ports
-        .iter()
-        .filter(|port| UNO_VENDOR_IDS.contains(&port.vendor_id));
-    let uno_ports: Vec<&UsbPort> = uno_ports.collect();
-    match (uno_ports.as_slice(), ports) {
-        ([port], _) => Ok((*port).clone()),
-        ([], [port]) => Ok(port.clone()),
-        ([], []) => Err(FindError::NoPort { command }),
-        ([], several) => Err(FindError::SeveralPorts {
+    let mut candidates = ports.to_vec();
+    candidates.retain(|port| UNO_VENDOR_IDS.contains(&port.vendor_id));
+    if candidates.is_empty() {
+        candidates = ports.to_vec();
+    }
+    match candidates.as_slice() {
+        [port] => Ok(port.clone()),
+        [] => Err(FindError::NoPort { command }),
+        _ => Err(FindError::SeveralPorts {
             command,
-            ports: several.to_vec(),
-        }),
-        (several, _) => Err(FindError::SeveralPorts {
-            command,
-            ports: several.iter().map(|port| (*port).clone()).collect(),
+            ports: candidates,
         }),
     }
 }

@@ -89,57 +89,54 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     pub fn press_key(&mut self, key: Key) -> std::result::Result<bool, LinkError> {
         self.message.clear();
         let result = match (key, self.step()) {
-            (Key::Leave, Step::Saved) | (Key::Next, Step::Saved) => Ok(true),
-            (Key::Leave, _) => self.leave().map(|()| true),
-            (Key::Back, Step::Walk) if self.skips_scales_and_limits => {
-                self.go_to_step(Step::OfferScales).map(|()| false)
+            (Key::Leave | Key::Next, Step::Saved) => return Ok(true),
+            (Key::Leave, _) => {
+                self.leave()?;
+                return Ok(true);
             }
-            (Key::Back, _) => self
-                .enter_step(self.step_index.saturating_sub(1))
-                .map(|()| false),
+            (Key::Back, Step::Walk) if self.skips_scales_and_limits => {
+                self.go_to_step(Step::OfferScales)
+            }
+            (Key::Back, _) => self.enter_step(self.step_index.saturating_sub(1)),
             (Key::Next, Step::OfferScales) => {
                 self.skips_scales_and_limits = true;
-                self.go_to_step(Step::Walk).map(|()| false)
+                self.go_to_step(Step::Walk)
             }
             (Key::Yes, Step::OfferScales) => {
                 self.skips_scales_and_limits = false;
-                self.enter_step(self.step_index + 1).map(|()| false)
+                self.enter_step(self.step_index + 1)
             }
             (Key::Next, Step::Sign(_)) => {
                 self.message = "Press the space bar, look, then answer with y or n.".to_owned();
-                Ok(false)
+                Ok(())
             }
-            (Key::Next, Step::Save) => self.save().map(|()| false),
-            (Key::Next, _) => self.enter_step(self.step_index + 1).map(|()| false),
-            (Key::Act, Step::Sign(servo)) => {
-                self.move_servo(servo, &SIGN_TURNS_DEG).map(|()| false)
-            }
-            (Key::Act, Step::Scale(servo)) => {
-                self.move_servo(servo, &SCALE_TURNS_DEG).map(|()| false)
-            }
+            (Key::Next, Step::Save) => self.save(),
+            (Key::Next, _) => self.enter_step(self.step_index + 1),
+            (Key::Act, Step::Sign(servo)) => self.move_servo(servo, &SIGN_TURNS_DEG),
+            (Key::Act, Step::Scale(servo)) => self.move_servo(servo, &SCALE_TURNS_DEG),
             (Key::LeftRight(degrees) | Key::UpDown(degrees), Step::Scale(servo)) => {
-                self.change_scale(servo, degrees).map(|()| false)
+                self.change_scale(servo, degrees)
             }
-            (Key::LeftRight(degrees), Step::Limit(servo)) => self
-                .change_limit(servo, 0, degrees.signum())
-                .map(|()| false),
-            (Key::UpDown(degrees), Step::Limit(servo)) => self
-                .change_limit(servo, 1, degrees.signum())
-                .map(|()| false),
-            (Key::Yes | Key::No, Step::Sign(servo)) => self.answer_sign(servo, key).map(|()| false),
+            (Key::LeftRight(degrees), Step::Limit(servo)) => {
+                self.change_limit(servo, 0, degrees.signum())
+            }
+            (Key::UpDown(degrees), Step::Limit(servo)) => {
+                self.change_limit(servo, 1, degrees.signum())
+            }
+            (Key::Yes | Key::No, Step::Sign(servo)) => self.answer_sign(servo, key),
             (Key::LeftRight(degrees) | Key::UpDown(degrees), Step::Trim(servo)) => {
-                block_on(self.robot.trim(servo, degrees)).map(|()| false)
+                block_on(self.robot.trim(servo, degrees))
             }
-            (Key::Act, Step::Walk) => self.set_walking(!self.is_walking).map(|()| false),
-            _ => Ok(false),
+            (Key::Act, Step::Walk) => self.set_walking(!self.is_walking),
+            _ => Ok(()),
         };
         match result {
-            Err(ConsoleError::Reply(BadReply::Refused { line, reason })) if key != Key::Leave => {
+            Err(ConsoleError::Reply(BadReply::Refused { line, reason })) => {
                 self.message = format!("The robot refuses `{line}`: {reason}.");
-                Ok(false)
             }
-            result => Ok(result?),
+            result => result?,
         }
+        Ok(false)
     }
 
     /// Reads the robot's messages while no key is pressed.
