@@ -150,10 +150,9 @@ impl Arms {
         };
         let left_coupler = self.from_left_shaft - left * self.five_bar.left_crank_length;
         let right_coupler = self.from_right_shaft - right * self.five_bar.right_crank_length;
-        let assembly_mode = if left_coupler.cross(right_coupler) >= 0.0 {
-            AssemblyMode::Ahead
-        } else {
-            AssemblyMode::Behind
+        let assembly_mode = match left_coupler.cross(right_coupler) >= 0.0 {
+            true => AssemblyMode::Ahead,
+            false => AssemblyMode::Behind,
         };
         (left, right, assembly_mode)
     }
@@ -194,13 +193,10 @@ fn crank_directions(
         crank * (1.0 / crank.length())
     });
     // If the products overflow or underflow, the results do not have length one.
-    if directions
-        .iter()
-        .all(|crank| (crank.length_squared() - 1.0).abs() < 1e-9)
-    {
-        Ok(directions)
-    } else {
-        Err(Fault::NotFinite)
+    let is_unit = |crank: &Vector| (crank.length_squared() - 1.0).abs() < 1e-9;
+    match directions.iter().all(is_unit) {
+        true => Ok(directions),
+        false => Err(Fault::NotFinite),
     }
 }
 

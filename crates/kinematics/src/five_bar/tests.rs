@@ -140,14 +140,9 @@ fn coinciding_crank_tips_give_a_fault_or_a_finite_singular_pose() {
         Ok(pose) => assert!(pose.type2.abs() < 1e-12 && pose.end_point.is_finite()),
         Err(fault) => panic!("{fault}"),
     }
-    let five_bar_without_base = FiveBar {
-        base: 0.0,
-        ..PAPER_HEAD
-    };
-    assert_eq!(
-        five_bar_without_base.forward(50.0, 50.0),
-        Err(Fault::Coincident)
-    );
+    let five_bar_without_base = FiveBar::new([0.0, 30.0, 50.0, 50.0, 30.0]);
+    let result = five_bar_without_base.forward(50.0, 50.0);
+    assert_eq!(result, Err(Fault::Coincident));
 }
 
 #[test]
@@ -191,40 +186,34 @@ fn the_messages_of_faults_state_the_distances_and_limits() {
         let fault = PAPER_HEAD.inverse(Vector::new(x, y)).unwrap_err();
         assert_eq!(fault.to_string(), message);
     }
-    let five_bar_with_short_couplers = FiveBar::new([20.0, 30.0, 10.0, 15.0, 30.0]);
-    assert_eq!(
-        five_bar_with_short_couplers
-            .forward(180.0, 0.0)
-            .unwrap_err()
-            .to_string(),
-        "the crank tips are 80.000 mm apart, the couplers reach 25.000 mm"
-    );
-    let five_bar_with_unequal_couplers = FiveBar::new([20.0, 30.0, 80.0, 50.0, 30.0]);
-    assert_eq!(
-        five_bar_with_unequal_couplers
-            .forward(90.0, 90.0)
-            .unwrap_err()
-            .to_string(),
-        "the crank tips are 20.000 mm apart, the couplers need 30.000 mm"
-    );
-    assert_eq!(
-        PAPER_HEAD.forward(f64::INFINITY, 0.0).unwrap_err(),
-        Fault::NotFinite
-    );
+    for (couplers, cranks, distances) in [
+        (
+            [10.0, 15.0],
+            [180.0, 0.0],
+            "80.000 mm apart, the couplers reach 25.000 mm",
+        ),
+        (
+            [80.0, 50.0],
+            [90.0, 90.0],
+            "20.000 mm apart, the couplers need 30.000 mm",
+        ),
+    ] {
+        let five_bar = FiveBar::new([20.0, 30.0, couplers[0], couplers[1], 30.0]);
+        let fault = five_bar.forward(cranks[0], cranks[1]).unwrap_err();
+        assert_eq!(fault.to_string(), format!("the crank tips are {distances}"));
+    }
+    let fault = PAPER_HEAD.forward(f64::INFINITY, 0.0).unwrap_err();
+    assert_eq!(fault, Fault::NotFinite);
 }
 
 #[test]
 fn a_distance_or_reach_that_overflows_is_reported_as_not_finite() {
     let far_point = Vector::new(1e200, 0.0);
-    assert_eq!(PAPER_HEAD.inverse(far_point).unwrap_err(), Fault::NotFinite);
-    assert_eq!(
-        PAPER_HEAD.pose_at_point(far_point).unwrap_err(),
-        Fault::NotFinite
-    );
+    let fault = PAPER_HEAD.pose_at_point(far_point).unwrap_err();
+    assert_eq!(fault, Fault::NotFinite);
     let infinite_five_bar = FiveBar::new([20.0, 30.0, 50.0, 50.0, f64::INFINITY]);
     let near_point = Vector::new(0.0, 50.0);
-    assert_eq!(
-        infinite_five_bar.inverse(near_point).unwrap_err(),
-        Fault::NotFinite
-    );
+    for (five_bar, point) in [(PAPER_HEAD, far_point), (infinite_five_bar, near_point)] {
+        assert_eq!(five_bar.inverse(point).unwrap_err(), Fault::NotFinite);
+    }
 }

@@ -95,10 +95,8 @@ proptest! {
 fn the_angles_for_two_points_put_head_and_tail_there() {
     let robot = paper_lizard();
     let angles_of = |end: End, x: f64, y: f64| robot.point_angles(end, Vector::new(x, y)).unwrap();
-    let ([a1, a2], [a3, a4]) = (
-        angles_of(End::Head, 8.0, 52.0),
-        angles_of(End::Tail, -5.0, 60.0),
-    );
+    let [a1, a2] = angles_of(End::Head, 8.0, 52.0);
+    let [a3, a4] = angles_of(End::Tail, -5.0, 60.0);
     let solution = robot.solve(&[a1, a2, a3, a4].into()).unwrap();
     assert!((solution.head_point() - Vector::new(8.0, 119.5)).length() < 1e-9);
     assert!((solution.tail_point() - Vector::new(-5.0, -127.5)).length() < 1e-9);
@@ -128,10 +126,8 @@ fn each_violated_limit_has_its_message() {
 #[test]
 fn a_pose_with_nan_is_infeasible_and_the_error_names_the_mechanism() {
     let result = paper_lizard().solve(&[f64::NAN, 41.0, 318.0, 221.0].into());
-    assert_eq!(
-        result.unwrap_err().to_string(),
-        "head: a value is not a finite number"
-    );
+    let message = result.unwrap_err().to_string();
+    assert_eq!(message, "head: a value is not a finite number");
 }
 
 #[test]
