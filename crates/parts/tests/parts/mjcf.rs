@@ -9,7 +9,9 @@ use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 use roxmltree::{Document, Node};
 
 use crate::mjcf_masses::mass_and_centre;
-use crate::mjcf_reader::{bodies, child, mjcf_with, neutral_solution, numbers, section_elements};
+use crate::mjcf_reader::{
+    STRUT_SPRING, bodies, child, mjcf_with, neutral_solution, numbers, section_elements,
+};
 use crate::{GRAIN_ROBOT, ROBOTS, robot_with};
 
 fn robot(name: &str) -> Robot {
@@ -37,14 +39,7 @@ fn loops_are_closed_where_the_robots_joints_are() {
             joints.insert(format!("follower joint {leg}"), leg_points.joints[1]);
             joints.insert(format!("leg anchor {leg}"), leg_points.strut_anchors[1]);
         }
-        let (force, rate) = (4.0, 0.4);
-        for strut_spring in [
-            None,
-            Some(StrutSpring {
-                preload: force,
-                rate,
-            }),
-        ] {
+        for strut_spring in [None, Some(STRUT_SPRING)] {
             let text = mjcf_with(&robot, |scene| scene.strut_spring = strut_spring);
             let document = Document::parse(&text).expect("the file is well-formed XML");
             let bodies_by_name = bodies(&document);
@@ -243,12 +238,12 @@ fn the_sphere_that_touches_the_floor_is_that_of_the_pads_dome() {
 
 #[test]
 fn a_slotted_strut_pulls_with_its_springs_force_and_yields_in_one_direction() {
-    let (force, rate) = (4.0, 0.4);
+    let StrutSpring {
+        preload: force,
+        rate,
+    } = STRUT_SPRING;
     let text = mjcf_with(&robot("paper"), |scene| {
-        scene.strut_spring = Some(StrutSpring {
-            preload: force,
-            rate,
-        })
+        scene.strut_spring = Some(STRUT_SPRING);
     });
     let document = Document::parse(&text).expect("the file is well-formed XML");
     let bodies_by_name = bodies(&document);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use lizard_kinematics::Solution;
-use lizard_parts::{Assembly, Scene, mjcf};
+use lizard_parts::{Assembly, Scene, StrutSpring, mjcf};
 use lizard_robot::Robot;
 use roxmltree::{Document, Node};
 
@@ -23,7 +23,11 @@ pub fn mjcf_with(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
 
 /// The numbers in an attribute, separated by spaces.
 pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
-    let text = node.attribute(attribute).expect(attribute);
+    parse_numbers(node.attribute(attribute).expect(attribute))
+}
+
+/// The numbers of a text, which are separated by spaces.
+pub fn parse_numbers(text: &str) -> Vec<f64> {
     let fields = text.split(' ');
     fields
         .map(|field| field.parse().expect("the field is a number"))
@@ -36,6 +40,18 @@ pub struct Placement {
     pub position: [f64; 3],
     pub rotation: f64,
 }
+
+/// A spring in each strut.
+pub const STRUT_SPRING: StrutSpring = StrutSpring {
+    preload: 4.0,
+    rate: 0.4,
+};
+
+/// The placement of the world.
+pub const WORLD: Placement = Placement {
+    position: [0.0; 3],
+    rotation: 0.0,
+};
 
 impl Placement {
     /// Converts a point from the body's frame to the world, m.
@@ -79,15 +95,7 @@ pub fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
     }
     let mut found_bodies = BTreeMap::new();
     let world = root_child(document, "worldbody");
-    let origin = [0.0; 3];
-    add_child_bodies(
-        world,
-        Placement {
-            position: origin,
-            rotation: 0.0,
-        },
-        &mut found_bodies,
-    );
+    add_child_bodies(world, WORLD, &mut found_bodies);
     found_bodies
 }
 

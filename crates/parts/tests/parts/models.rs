@@ -4,12 +4,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 
-use lizard_parts::{Assembly, Pieces, Scene, StrutSpring};
+use lizard_parts::{Assembly, Pieces, Scene};
 use lizard_robot::Robot;
 use lizard_robot::servo::SERVO_NAMES;
 use roxmltree::{Document, Node};
 
-use crate::mjcf_reader::{Placement, bodies, child, mjcf_with, neutral_solution, numbers};
+use crate::mjcf_reader::{
+    Placement, STRUT_SPRING, WORLD, bodies, child, mjcf_with, neutral_solution, numbers,
+    parse_numbers,
+};
 use crate::{ROBOTS, robot_with};
 
 /// The URDF and the SDF file of a robot whose scene is changed by `change`, and the names of their mesh files.
@@ -30,13 +33,6 @@ fn urdf_and_sdf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2],
 /// The text in the first child element with a tag.
 fn text_of(node: Node, tag: &str) -> String {
     child(node, tag).text().expect(tag).to_owned()
-}
-
-fn parse_floats(text: &str) -> Vec<f64> {
-    let fields = text.split(' ');
-    fields
-        .map(|field| field.parse().expect("the field is a number"))
-        .collect()
 }
 
 /// The child elements with a tag, by their name attributes. Fails if a name contains a space or occurs twice.
@@ -65,10 +61,6 @@ fn frame_on(frame: Placement, pose: &[f64]) -> Placement {
     }
 }
 
-const WORLD: Placement = Placement {
-    position: [0.0; 3],
-    rotation: 0.0,
-};
 const INERTIA_KEYS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// The bodies of a URDF file by name. Each is placed by the joints from the root to its link.
@@ -129,16 +121,16 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
         let frame = frame.map_or(WORLD, |parent| placement_of(links, parent));
         frame_on(
             frame,
-            &parse_floats(pose.text().expect("the pose has a text")),
+            &parse_numbers(pose.text().expect("the pose has a text")),
         )
     }
     let mut read_bodies = BTreeMap::new();
     for (name, link) in &links {
         let inertial = child(*link, "inertial");
         let inertia_node = child(inertial, "inertia");
-        let inertia = INERTIA_KEYS.map(|name| parse_floats(&text_of(inertia_node, name))[0]);
-        let mass = parse_floats(&text_of(inertial, "mass"))[0];
-        let centre = parse_floats(&text_of(inertial, "pose"))[..3].to_vec();
+        let inertia = INERTIA_KEYS.map(|name| parse_numbers(&text_of(inertia_node, name))[0]);
+        let mass = parse_numbers(&text_of(inertial, "mass"))[0];
+        let centre = parse_numbers(&text_of(inertial, "pose"))[..3].to_vec();
         read_bodies.insert(
             name.clone(),
             (placement_of(&links, name), mass, centre, inertia.to_vec()),
@@ -149,18 +141,8 @@ fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
 
 #[test]
 fn urdf_and_sdf_have_the_bodies_of_the_mujoco_file_with_x_forward() {
-    let (force, rate) = (4.0, 0.4);
     for name in ROBOTS {
-        for (strut_spring, play) in [
-            (None, 0.0),
-            (
-                Some(StrutSpring {
-                    preload: force,
-                    rate,
-                }),
-                0.5,
-            ),
-        ] {
+        for (strut_spring, play) in [(None, 0.0), (Some(STRUT_SPRING), 0.5)] {
             let robot = robot_with(name, "");
             let change =
                 |scene: &mut Scene| (scene.strut_spring, scene.play) = (strut_spring, play);
@@ -256,7 +238,7 @@ fn servos_have_their_names_ranges_torques_and_rates_in_urdf_and_sdf() {
         let attributes = ["lower", "upper", "effort", "velocity"];
         let urdf_limits = attributes.map(|attribute| numbers(limit, attribute)[0]);
         let limit = child(child(sdf_joints[name], "axis"), "limit");
-        let sdf_limits = attributes.map(|attribute| parse_floats(&text_of(limit, attribute))[0]);
+        let sdf_limits = attributes.map(|attribute| parse_numbers(&text_of(limit, attribute))[0]);
         for limits in [urdf_limits, sdf_limits] {
             for (actual, expected) in limits.into_iter().zip(expected) {
                 assert!(
