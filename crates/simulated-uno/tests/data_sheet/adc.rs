@@ -1,9 +1,8 @@
 //! Tests of the simulated supply and ADC against the data sheet, chapters 11.5 and 24.
 
-use simulated_uno::avr_gcc::compile_c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
-use super::{intervals, mark_cycles, mark_values, new_uno, reset_causes};
+use super::{compile_with_headers, intervals, mark_cycles, mark_values, new_uno, reset_causes};
 
 /// The CPU cycles of an ADC clock with prescaler 128, 125 kHz.
 const CYCLES_PER_CLOCK: u64 = 128;
@@ -11,11 +10,8 @@ const CYCLES_PER_CLOCK: u64 = 128;
 /// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
 /// writes the result to GPIOR0 as two marks, low byte first, and `convert()` does all three.
 fn program(body: &str) -> Image {
-    compile_c(&format!(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        #include <util/delay.h>
-        #define start() (ADCSRA = 0xc7)
+    compile_with_headers(&format!(
+        "#define start() (ADCSRA = 0xc7)
         #define wait() while (ADCSRA & 0x40) {{}}
         #define show() do {{ GPIOR0 = ADCL; GPIOR0 = ADCH; }} while (0)
         #define convert() do {{ start(); wait(); show(); }} while (0)

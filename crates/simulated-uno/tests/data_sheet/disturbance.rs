@@ -5,7 +5,8 @@ use simulated_uno::Uno;
 use simulated_uno::avr_gcc::{assemble, compile_c};
 
 use super::{
-    FIDELITIES, LED, intervals, mark_cycles, mark_values, new_uno, pulse_widths, unos_after,
+    FIDELITIES, LED, compile_with_headers, intervals, mark_cycles, mark_values, new_uno,
+    pulse_widths, unos_after,
 };
 
 /// Program in which the LED is on for 100 cycles with interrupts disabled, and off for about 99 with interrupts
@@ -57,10 +58,8 @@ fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
 
 #[test]
 fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1 >> 4; }
+    let image = compile_with_headers(
+        "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1 >> 4; }
         int main(void) {
             SMCR = 1; OCR1A = 9999; TIMSK1 = 2; TCCR1B = 9;
             sei();
@@ -80,10 +79,8 @@ fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
 
 #[test]
 fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        ISR(USART_RX_vect) { GPIOR0 = UDR0; }
+    let image = compile_with_headers(
+        "ISR(USART_RX_vect) { GPIOR0 = UDR0; }
         int main(void) {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
             sei();

@@ -1,11 +1,11 @@
 //! Tests of the simulated EEPROM against the data sheet, chapters 8.4 and 8.6.
 
-use simulated_uno::avr_gcc::{assemble, compile_c};
+use simulated_uno::avr_gcc::assemble;
 use simulated_uno::{CYCLES_PER_US, EEPROM_SIZE, EepromMode, Fidelity, Image, Uno};
 
 use super::{
-    CORRECTION_IS_OBSOLETE, assert_within, intervals, mark_cycles, mark_values, new_uno,
-    pulse_widths, uno_after, uno_after_ms,
+    CORRECTION_IS_OBSOLETE, assert_within, compile_with_headers, intervals, mark_cycles,
+    mark_values, new_uno, pulse_widths, uno_after, uno_after_ms,
 };
 
 /// Cycles of an operation that erases and writes. Table 8-1: "Erase and Write in one operation (Atomic Operation)",
@@ -22,11 +22,8 @@ fn run(source: &str, cycles: u64) -> Uno {
 /// Compiles `body` together with functions for the EEPROM: `set(address, byte, mode)` and `get(address)`, as in the
 /// data sheet's examples, and `busy()`.
 pub fn program(body: &str) -> Image {
-    compile_c(&format!(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        #include <util/delay.h>
-        #define busy() (EECR & 2)
+    compile_with_headers(&format!(
+        "#define busy() (EECR & 2)
         static __attribute__((unused)) void set(unsigned at, unsigned char byte, unsigned char mode) {{
             while (busy()) {{}}
             EECR = mode << 4; EEAR = at; EEDR = byte;

@@ -3,7 +3,10 @@
 use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, most_pins_high};
 
-use super::{FIDELITIES, LED, new_uno, numbered_edges, pulse_widths, uno_after, unos_after};
+use super::{
+    FIDELITIES, LED, compile_with_headers, new_uno, numbered_edges, pulse_widths, uno_after,
+    unos_after,
+};
 
 #[test]
 fn a_pulse_of_counted_instructions_has_its_counted_width() {
@@ -156,10 +159,8 @@ fn a_store_outside_memory_is_a_crash() {
 
 #[test]
 fn resets_by_the_watchdog_are_counted() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/wdt.h>
-        int main(void) {
+    let image = compile_with_headers(
+        "int main(void) {
             MCUSR = 0;
             wdt_enable(WDTO_15MS);
             PORTB = 0; DDRB = 0x20; PORTB = 0x20;
@@ -234,9 +235,8 @@ fn a_call_without_interrupts_takes_its_counted_cycles() {
 
 #[test]
 fn only_the_outermost_of_recursive_calls_is_timed() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        __attribute__((noinline)) void work(unsigned char depth) {
+    let image = compile_with_headers(
+        "__attribute__((noinline)) void work(unsigned char depth) {
             GPIOR0 = depth;
             if (depth) work(depth - 1);
             __builtin_avr_delay_cycles(1000);
@@ -258,11 +258,8 @@ fn only_the_outermost_of_recursive_calls_is_timed() {
 
 #[test]
 fn the_cycles_of_interrupts_in_a_timed_call_are_counted_separately() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        #include <util/delay.h>
-        ISR(TIMER1_COMPA_vect, ISR_NAKED) { asm volatile (\"nop\\n nop\\n reti\"); }
+    let image = compile_with_headers(
+        "ISR(TIMER1_COMPA_vect, ISR_NAKED) { asm volatile (\"nop\\n nop\\n reti\"); }
         __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(100000); }
         int main(void) {
             OCR1A = 999; TIMSK1 = 2; TCCR1B = 9;

@@ -1,10 +1,11 @@
 //! Tests of the simulated UNO's interrupts and Timer1, with programs whose cycles are counted by hand.
 
-use simulated_uno::avr_gcc::{assemble, compile_c};
+use simulated_uno::avr_gcc::assemble;
 use simulated_uno::{Fidelity, Uno};
 
 use super::{
-    CORRECTION_IS_OBSOLETE, FIDELITIES, LED, mark_cycles, mark_values, uno_after, unos_after,
+    CORRECTION_IS_OBSOLETE, FIDELITIES, LED, compile_with_headers, mark_cycles, mark_values,
+    uno_after, unos_after,
 };
 
 /// Program that sleeps, with Timer1 in CTC mode and a compare interrupt every 10 000 cycles. The handler's first
@@ -140,9 +141,7 @@ fn an_interrupt_enabled_after_its_flag_fires_and_clearing_a_flag_leaves_the_othe
             &[0],
         ),
     ] {
-        let image = compile_c(&format!(
-            "#include <avr/io.h>\n#include <avr/interrupt.h>\n{program}"
-        ));
+        let image = compile_with_headers(program);
         let [simavr_marks, data_sheet_marks] =
             unos_after(100_000, &image).map(|uno| mark_values(&uno));
         assert_eq!(data_sheet_marks, expected, "{message}");
@@ -178,9 +177,8 @@ fn an_interrupt_enabled_while_its_flag_is_set_is_served_after_that_instruction()
 fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
     // The program writes the high byte of OCR1A, then both bytes of OCR1B, then the low byte of OCR1A. A write to a
     // high byte only fills TEMP, so both registers get the high byte that was written for OCR1B.
-    let image = compile_c(
-        "#include <avr/io.h>
-        int main(void) {
+    let image = compile_with_headers(
+        "int main(void) {
             OCR1AH = 0x12;
             OCR1BH = 0x34; OCR1BL = 0x56;
             OCR1AL = 0x78;

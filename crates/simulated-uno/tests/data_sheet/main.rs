@@ -15,6 +15,7 @@ mod say;
 mod serial;
 mod watchdog;
 
+use simulated_uno::avr_gcc::compile_c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
 /// The pin of the LED on the board.
@@ -89,6 +90,13 @@ fn transmitted_bytes(uno: &Uno) -> Vec<u8> {
 /// Returns the causes of all starts of the program, the first power-on included.
 fn reset_causes(uno: &Uno) -> Vec<ResetCause> {
     uno.reset_events().iter().map(|reset| reset.cause).collect()
+}
+
+/// Compiles C after the headers of registers, interrupts, the watchdog and delays.
+fn compile_with_headers(source: &str) -> Image {
+    let names = ["avr/io.h", "avr/interrupt.h", "avr/wdt.h", "util/delay.h"];
+    let headers = names.map(|name| format!("#include <{name}>\n"));
+    compile_c(&(headers.concat() + source))
 }
 
 #[track_caller]

@@ -1,19 +1,18 @@
 //! Tests of the simulated UNO's resets against the data sheet, chapter 11.
 
-use simulated_uno::avr_gcc::{assemble, assemble_at, compile_c};
+use simulated_uno::avr_gcc::{assemble, assemble_at};
 use simulated_uno::{
     CYCLES_PER_MS, Fidelity, Image, Pin, PowerCut, ResetCause, SRAM_END, SRAM_START, State, Uno,
 };
 
 use super::{
-    mark_values, new_uno, reset_causes, transmitted_bytes, uno_after, uno_after_ms, unos_after,
+    compile_with_headers, mark_values, new_uno, reset_causes, transmitted_bytes, uno_after,
+    uno_after_ms, unos_after,
 };
 
 /// Compiles a program whose main function runs these statements once.
 fn program_once(body: &str) -> Image {
-    compile_c(&format!(
-        "#include <avr/io.h>\nint main(void) {{ {body} for (;;) {{}} }}"
-    ))
+    compile_with_headers(&format!("int main(void) {{ {body} for (;;) {{}} }}"))
 }
 
 /// Compiles a program that marks the value of MCUSR at each start and does not change MCUSR.
@@ -234,9 +233,8 @@ fn a_sleeping_board_is_reset_at_the_current_cycle() {
 
 #[test]
 fn the_serial_line_continues_after_a_reset() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        int main(void) {
+    let image = compile_with_headers(
+        "int main(void) {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
             for (;;) { while (!(UCSR0A & 0x80)) {} UDR0 = UDR0; } }",
     );
@@ -253,10 +251,8 @@ fn the_serial_line_continues_after_a_reset() {
 fn after_a_boot_loader_mcusr_is_zero_and_the_watchdog_is_off() {
     // Optiboot: `ch = MCUSR; MCUSR = 0; if (!(ch & _BV(EXTRF))) appStart();`, and
     // appStart begins with watchdogConfig(WATCHDOG_OFF).
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/wdt.h>
-        int main(void) {
+    let image = compile_with_headers(
+        "int main(void) {
             GPIOR0 = MCUSR; GPIOR0 = WDTCSR;
             static volatile unsigned char starts __attribute__((section(\".noinit\")));
             if (GPIOR0 == 0 && starts != 0x99) { starts = 0x99; wdt_enable(WDTO_15MS); }

@@ -1,11 +1,10 @@
 //! Tests of the simulated serial line against the data sheet: baud rate, lost bytes, framing errors and floods.
 
-use simulated_uno::avr_gcc::compile_c;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Uno};
 
 use super::{
-    FIDELITIES, assert_within, intervals, mark_values, new_uno, transmitted_bytes, uno_after,
-    uno_after_ms, unos_after,
+    FIDELITIES, assert_within, compile_with_headers, intervals, mark_values, new_uno,
+    transmitted_bytes, uno_after, uno_after_ms, unos_after,
 };
 
 /// Cycles of a 10-bit frame at exactly 115 200 baud, the sender's baud rate.
@@ -16,11 +15,8 @@ const UNO_FRAME_CYCLES: u64 = 10 * 17 * 8;
 /// Compiles a program at 115 200 baud that runs `body` in an endless loop; `get()` receives a byte, `put()` sends
 /// one.
 fn program(body: &str) -> Image {
-    compile_c(&format!(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        #include <util/delay.h>
-        static unsigned char get(void) {{ while (!(UCSR0A & 0x80)) {{}} return UDR0; }}
+    compile_with_headers(&format!(
+        "static unsigned char get(void) {{ while (!(UCSR0A & 0x80)) {{}} return UDR0; }}
         static void put(unsigned char byte) {{ while (!(UCSR0A & 0x20)) {{}} UDR0 = byte; }}
         int main(void) {{
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x18;
@@ -117,10 +113,8 @@ fn an_overrun_is_flagged_until_the_next_read() {
 
 #[test]
 fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        static volatile unsigned char sum;
+    let image = compile_with_headers(
+        "static volatile unsigned char sum;
         ISR(USART_RX_vect) { sum += UDR0; GPIOR0 = sum; }
         int main(void) {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90;
@@ -144,10 +138,7 @@ fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
 
 #[test]
 fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        ISR(USART_UDRE_vect) { static unsigned char n; UDR0 = n++; if (n == 100) UCSR0B &= ~0x20; }
+    let image = compile_with_headers("ISR(USART_UDRE_vect) { static unsigned char n; UDR0 = n++; if (n == 100) UCSR0B &= ~0x20; }
         int main(void) { UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x28; sei(); for (;;) {} }",
     );
     let uno = uno_after_ms(20, image);
@@ -258,10 +249,8 @@ fn a_run_until_a_line_ends_with_the_line_or_at_the_limit() {
 
 #[test]
 fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_divided() {
-    let image = compile_c(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        ISR(USART_RX_vect) { GPIOR0 = UDR0; }
+    let image = compile_with_headers(
+        "ISR(USART_RX_vect) { GPIOR0 = UDR0; }
         int main(void) {
             UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x90; SMCR = 1; sei();
             for (;;) asm volatile (\"sleep\");

@@ -1,11 +1,11 @@
 //! Tests of the simulated watchdog against the data sheet, chapters 11.8 and 11.9.2.
 
-use simulated_uno::avr_gcc::{assemble, compile_c};
+use simulated_uno::avr_gcc::assemble;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, ResetCause, State, Uno};
 
 use super::{
-    CORRECTION_IS_OBSOLETE, assert_within, intervals, mark_cycles, mark_values, new_uno, uno_after,
-    uno_after_ms,
+    CORRECTION_IS_OBSOLETE, assert_within, compile_with_headers, intervals, mark_cycles,
+    mark_values, new_uno, uno_after, uno_after_ms,
 };
 
 /// The shortest time-out, 2 048 cycles of the 128 kHz oscillator, in CPU cycles.
@@ -20,11 +20,8 @@ fn watchdog_reset_cycles(uno: &Uno) -> Vec<u64> {
 
 /// Compiles a program in which the macro `set(value)` runs the timed sequence of 11.8.2 and writes `value` to WDTCSR.
 fn program(body: &str) -> Image {
-    compile_c(&format!(
-        "#include <avr/io.h>
-        #include <avr/interrupt.h>
-        #include <util/delay.h>
-        #define wdr() asm volatile (\"wdr\")
+    compile_with_headers(&format!(
+        "#define wdr() asm volatile (\"wdr\")
         #define set(value) do {{ unsigned char v = (value); asm volatile ( \
             \"sts %1, %2\\n sts %1, %0\" :: \"r\"(v), \"n\"(_SFR_MEM_ADDR(WDTCSR)), \
             \"r\"((unsigned char)0x18)); }} while (0)
