@@ -311,17 +311,16 @@ fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
     assert!(operation_count > 10, "{operation_count}");
     let (mut neutral_count, mut rest_count) = (0, 0);
     for operation in 0..operation_count as u64 {
-        let cuts: [(u8, fn(u64) -> PowerCut); 3] = [
-            (0, PowerCut::InWrite),
-            (0x5a, PowerCut::InWrite),
-            (0x33, PowerCut::InErase),
-        ];
-        for (stuck_bits, cut) in cuts {
+        for (stuck_bits, cut) in [
+            (0, PowerCut::InWrite(operation)),
+            (0x5a, PowerCut::InWrite(operation)),
+            (0x33, PowerCut::InErase(operation)),
+        ] {
             bench.uno.set_eeprom(&blank_eeprom);
             power_cycle(&mut bench);
             bench.run_ms(500);
             move_to_nearby_pose(&mut bench);
-            bench.uno.cut_power(cut(operation), stuck_bits);
+            bench.uno.cut_power(cut, stuck_bits);
             bench.say("rest");
             bench.uno.run_ms(400);
             assert_eq!(*bench.uno.state(), State::Off);

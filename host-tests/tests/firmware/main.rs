@@ -112,8 +112,6 @@ fn first_moving_gait() -> String {
     )
 }
 
-/// Returns the commands for all gaits.
-
 /// Returns the command for the pose at these angles from neutral, deg.
 fn pose_command(sweeps_deg: [f64; 4]) -> String {
     let angles: [f64; 4] = std::array::from_fn(|i| robot().servos()[i].neutral + sweeps_deg[i]);

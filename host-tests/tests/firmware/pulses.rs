@@ -36,9 +36,6 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
     assert_eq!(most_pins_high(&edges), 1);
 }
 
-/// Returns the cycle of A1's first pulse since power-on. The bench must still hold all edges, so this function must be
-/// called before the bench runs for frames.
-
 /// Returns the widths that the core computes for these frames if it receives only the first `received_count` bytes.
 /// `first_rise` is the cycle of A1's first pulse.
 pub fn commanded_widths(

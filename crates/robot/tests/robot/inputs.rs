@@ -8,8 +8,6 @@ use super::{paper, paper_text, paper_with_tables};
 /// Both inputs, each with a free pin.
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
-/// Reads the paper's robot with additional tables.
-
 /// Returns the error message for these tables, with its line number counted from their first line.
 fn refusal_of(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);

@@ -6,8 +6,6 @@ use lizard_robot::Round;
 
 use super::{gait, paper, paper_text, paper_with_tables};
 
-/// Reads the paper's robot with additional tables.
-
 /// Returns the error message for a routine `patrol` with these lines.
 fn refusal_of(lines: &str) -> String {
     let result = paper_with_tables(&format!("[routine.patrol]\n{lines}"));

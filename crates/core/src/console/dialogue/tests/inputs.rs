@@ -49,8 +49,6 @@ fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     lines
 }
 
-/// Returns the name of the running gait; if none runs, that of the activity.
-
 /// Runs until the robot's activity changes, at most [`LONG_FRAMES`] frames; returns the number of frames and the
 /// activity.
 fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
