@@ -196,12 +196,12 @@ fn without_avrdude_the_message_says_what_to_install() {
     };
     command.arg(script).env("PATH", bin_folder.path());
     let output = LIMIT.output(&mut command, b"");
-    let output = output.expect("setpriv starts (Debian package util-linux)");
-    let output_text = String::from_utf8_lossy(&output.stdout);
-    assert!(output_text.contains("setup:"), "{output_text}");
+    let output = output.expect("bash runs (as root with setpriv of Debian package util-linux)");
+    let stdout_text = String::from_utf8_lossy(&output.stdout);
+    assert!(stdout_text.contains("setup:"), "{stdout_text}");
     assert!(!output.status.success());
     assert!(
-        output_text.contains("As root, run:\n    apt-get install -y avrdude"),
-        "{output_text}"
+        stdout_text.contains("As root, run:\n    apt-get install -y avrdude"),
+        "{stdout_text}"
     );
 }

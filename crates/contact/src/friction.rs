@@ -1,4 +1,4 @@
-//! The movement of least friction in a small step: a small convex problem.
+//! The movement of least frictional work in a small step: a small convex problem.
 //!
 //! The cost of a pad is its load times the length of its slide, in which backward components are
 //! multiplied by the friction ratio. A leg on a spring may lag behind its servo at the cost of the
@@ -50,7 +50,7 @@ pub(crate) struct Pads {
     pub friction_ratio: f64,
     /// Loads of the pads, relative to the mean.
     pub loads: [f64; 4],
-    /// The drives, unless all are rigid and no motor turns a servo.
+    /// Compliance of legs and servos; `None` if every leg is rigid and every servo follows its pulses exactly.
     pub compliance: Option<Compliance>,
     /// Inertia of body and legs; `None` in a quasi-static step.
     pub inertia: Option<Inertia>,
@@ -131,7 +131,7 @@ impl Pads {
 
     /// Finds the displacement of body and legs with the least cost, starting from a guess.
     pub fn minimise_cost_from(&self, guess: Option<&Displacement>) -> Displacement {
-        let slide_size = max_component(&self.swings).max(self.max_free_distance());
+        let slide_size = max_abs_component(&self.swings).max(self.max_free_distance());
         if slide_size < MAX_ZERO_DISTANCE {
             return self.displacement_of([0.0; 3], [0.0; 4]);
         }
@@ -141,7 +141,7 @@ impl Pads {
             twist: [
                 slide_size,
                 slide_size,
-                slide_size / max_component(&self.positions),
+                slide_size / max_abs_component(&self.positions),
             ],
             lags: self.compliance.map_or([0.0; 4], |compliance| {
                 compliance
@@ -198,7 +198,7 @@ impl Pads {
                     let z: [f64; 4] = std::array::from_fn(|i| z[i] - fraction * dz[i]);
                     (x, z)
                 };
-                // Halves the step until the cost falls sufficiently, within rounding errors.
+                // Backtracking line search: halves the step until the cost falls, allowing for rounding errors.
                 let cost_limit = current.cost * (1.0 + 1e-14);
                 let fractions = std::iter::successors(Some(1.0), |fraction| Some(fraction / 2.0));
                 let mut candidates =
@@ -234,7 +234,7 @@ impl Pads {
     }
 
     /// Largest distance that a pad may move even if no servo sweeps in this step, mm: a motor may turn its leg, or a
-    /// spring may pull its leg back. A spring overcomes its pad only after pads or springs have changed.
+    /// spring may pull its leg back. A spring can overcome its pad's friction only if pads or springs have changed.
     fn max_free_distance(&self) -> f64 {
         let Some(compliance) = &self.compliance else {
             return 0.0;
@@ -306,7 +306,7 @@ impl Pads {
             let [ux, uy] = [wx * slide[0], wy * slide[1]];
             let length = (ux * ux + uy * uy + eps * eps).sqrt();
             // Derivatives of the slide with respect to the components of the twist.
-            let rows = [
+            let derivatives = [
                 [units.twist[0], 0.0],
                 [0.0, units.twist[1]],
                 [-y * units.twist[2], x * units.twist[2]],
@@ -319,8 +319,8 @@ impl Pads {
                 )
             });
             let length_derivative_of = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
-            // Derivatives of the costs of the pad's friction and of its leg's inertia with respect to unknowns, each
-            // given by its row: the derivative of the slide with respect to it.
+            // Derivatives of the pad's friction cost plus its leg's inertia cost. Each argument is the derivative of
+            // the slide with respect to one unknown.
             let first_derivative_of = |row: Point| {
                 load * length_derivative_of(row) + leg_stiffness * dot(row, slide_change)
             };
@@ -332,9 +332,9 @@ impl Pads {
             };
             cost += load * length + leg_stiffness * dot(slide_change, slide_change) / 2.0;
             for i in 0..3 {
-                gradient[i] += first_derivative_of(rows[i]);
+                gradient[i] += first_derivative_of(derivatives[i]);
                 for j in 0..3 {
-                    hessian[i][j] += second_derivative_of(rows[i], rows[j]);
+                    hessian[i][j] += second_derivative_of(derivatives[i], derivatives[j]);
                 }
             }
             let Some(compliance) = &self.compliance else {
@@ -354,7 +354,7 @@ impl Pads {
                 slope: first_derivative_of(lag_row) + lag_torque * lag_unit,
                 curvature: second_derivative_of(lag_row, lag_row)
                     + lag_stiffness * lag_unit * lag_unit,
-                mixed: rows.map(|twist_row| second_derivative_of(twist_row, lag_row)),
+                mixed: derivatives.map(|twist_row| second_derivative_of(twist_row, lag_row)),
             };
             for (i, mixed) in leg.mixed.into_iter().enumerate() {
                 gradient[i] -= mixed * leg.slope / leg.curvature;
@@ -417,8 +417,8 @@ impl LagDerivatives {
     }
 }
 
-/// Largest magnitude of all components of the points.
-fn max_component(points: &[Point; 4]) -> f64 {
+/// The largest absolute value of all components of the points.
+fn max_abs_component(points: &[Point; 4]) -> f64 {
     let components = points.iter().flatten();
     components.fold(0.0f64, |max, component| max.max(component.abs()))
 }

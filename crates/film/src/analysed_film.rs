@@ -118,7 +118,7 @@ impl AnalysedFilm {
                     .total_cmp(&(b.seconds - time).abs())
             })
         };
-        let frames: Vec<&Frame> = cycles.calm_times.iter().filter_map(nearest_frame).collect();
+        let frames: Vec<&Frame> = cycles.boundaries.iter().filter_map(nearest_frame).collect();
         let mean_movement = |scene: &Scene| -> [f64; 3] {
             let mut points: Vec<PathPoint> = frames
                 .iter()

@@ -31,8 +31,8 @@ pub(crate) struct Cycles {
     pub period: Figure,
     /// The predicted rate of movement at the calm phase, per cycle: mm, mm, deg.
     pub calm_rate: [f64; 3],
-    /// The times of the calm phases that separate the cycles, s.
-    pub calm_times: Vec<f64>,
+    /// The times of the calm phases at which the path is divided into cycles, s.
+    pub boundaries: Vec<f64>,
     /// The movement of each cycle.
     pub travels: Vec<Travel>,
     /// Time and place of the start of each cycle, and of the end of the last one.
@@ -87,7 +87,7 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Tro
     Ok(Cycles {
         period,
         calm_rate: gait.rate_at(calm_phase),
-        calm_times: calm_points.iter().map(|point| point.seconds).collect(),
+        boundaries: calm_points.iter().map(|point| point.seconds).collect(),
         travels: calm_points.windows(2).map(travel_of).collect(),
         starts: calm_points.iter().map(start_of).collect(),
         start_error: start.error,

@@ -8,7 +8,7 @@ use crate::gait::Gait;
 use crate::mean::{self, Mean, WalkValues};
 use crate::walk::{Walk, travel_components};
 
-/// A measured gait.
+/// A gait's mean displacement, period and path per cycle, measured from films.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredGait {
     /// Displacement per cycle along the robot's forward direction at the start of the cycle, mm.
@@ -21,9 +21,9 @@ pub struct MeasuredGait {
     pub period: Figure,
     /// The movement of each cycle.
     pub cycles: Vec<Travel>,
-    /// The times of the calm phases that separate the cycles of each walk, s.
-    pub calm_times: Vec<f64>,
-    /// The mean path within a cycle, beside the predicted one.
+    /// The times of the calm phases at which each walk is divided into cycles, s.
+    pub cycle_boundaries: Vec<f64>,
+    /// The mean path within a cycle, with the predicted path for comparison.
     pub cycle_path: Vec<CyclePoint>,
     /// The walks from which the means are computed.
     walks: Vec<Walk>,
@@ -58,9 +58,9 @@ impl MeasuredGait {
                 value: mean_over_cycles(|walk| walk.cycles.period.value),
                 error: mean_over_cycles(|walk| walk.cycles.period.error),
             },
-            calm_times: walks
+            cycle_boundaries: walks
                 .iter()
-                .flat_map(|walk| walk.cycles.calm_times.clone())
+                .flat_map(|walk| walk.cycles.boundaries.clone())
                 .collect(),
             cycle_path: cycle_path::compute_points(&walks, gait),
             cycles,

@@ -42,26 +42,26 @@ pub struct LegPose<T = f64> {
 
 impl LegPose {
     /// theta_lg13: the follower's angle, (-180, 180] degrees.
-    pub fn follower(&self) -> f64 {
+    pub fn follower_angle(&self) -> f64 {
         wrap(self.theta)
     }
 
     /// theta_lg12: the coupler's angle relative to the ground link, degrees; always 0 in a
     /// parallelogram.
-    pub const fn coupler(&self) -> f64 {
+    pub const fn coupler_angle(&self) -> f64 {
         0.0
     }
 }
 
 impl Leg {
-    /// The pose of a leg of this end at a crank angle (degrees) whose direction (length one) is
+    /// The pose of a leg at `end` for a crank angle (degrees) whose direction (length one) is
     /// already known; both in the chassis frame.
     #[inline(always)]
-    pub fn pose_of_direction<T: Real>(&self, end: End, theta: T, crank: Vector<T>) -> LegPose<T> {
+    pub fn pose_at<T: Real>(&self, end: End, theta: T, crank_direction: Vector<T>) -> LegPose<T> {
         LegPose {
             theta,
-            direction: crank,
-            margin: margin(end.mirror(crank)),
+            direction: crank_direction,
+            margin: margin(end.mirror(crank_direction)),
         }
     }
 }

@@ -240,10 +240,7 @@ impl Lizard {
         let cranks = core::array::from_fn(|i| Vector::new(cosines[i], sines[i]));
         let head = self.end_pose_unchecked(End::Head, cranks);
         let tail = self.end_pose_unchecked(End::Tail, cranks);
-        let leg_pose_of = |i: usize| {
-            self.leg
-                .pose_of_direction(End::of_servo(i), angles[i], cranks[i])
-        };
+        let leg_pose_of = |i: usize| self.leg.pose_at(End::of_servo(i), angles[i], cranks[i]);
         let legs: [LegPose; 4] = core::array::from_fn(leg_pose_of);
         let mut type1 = [head.type2; 4];
         for (end, pose) in [(End::Head, &head), (End::Tail, &tail)] {

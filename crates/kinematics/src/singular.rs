@@ -21,7 +21,7 @@ pub enum Singularity {
     RightArm,
 }
 
-/// A singular pose of a five-bar. Crank angles in (-180, 180] degrees, the five-bar's own frame.
+/// A singular pose of a five-bar. The crank angles are in (-180, 180] degrees, in the five-bar's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SingularPose {
     /// The links that line up.
@@ -58,8 +58,8 @@ impl FiveBar {
             .into_iter()
             .flat_map(move |reach| five_bar.right_cranks_at(tip + left * reach, l3))
             .map(|theta| (Singularity::LeftArm, theta));
-        // Type 1, right arm: the end point is on a circle about the right shaft with radius l4 + l3 or
-        // |l4 - l3|.
+        // Type 1, right arm: the end point is on a circle about the right shaft with radius
+        // right crank + l3 or |right crank - l3|.
         let right_arm = [
             five_bar.right_crank_length + l3,
             five_bar.right_crank_length - l3,

@@ -1,8 +1,8 @@
-//! The solid model of the robot: bodies with layers and places, made from robot.toml.
+//! The solid model of the robot: bodies built of layers, and their placement at a pose, generated from robot.toml.
 //!
-//! The mechanism is flat and all its joint axes are vertical, so a part is a stack of layers, each a flat shape between
-//! two heights, and one table has the heights of the whole robot ([`Stack`]). A pose turns and shifts each body in the
-//! plane; nothing moves up or down.
+//! The mechanism is planar and all its joint axes are vertical, so a part is a stack of layers, each a flat shape
+//! between two heights, and one table has the heights of all layers ([`Stack`]). A pose rotates and translates each
+//! body in the plane; nothing moves up or down.
 //!
 //! # Example
 //! ```
@@ -25,7 +25,7 @@
 //!   `Chassis` on none. Links, cranks and followers turn about a fixed point by the servo's
 //!   angle; feet and struts do not turn. [`Assembly::place`] computes this.
 //! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the
-//!   union of its shapes less its holes, so its shapes without the holes enclose it,
+//!   union of its shapes minus its holes, so its shapes without the holes enclose it,
 //!   which suits a collision proof: a body that is clear of the shapes is clear of the part.
 //!   [`Shape::distance`] is exact.
 //! - [`Assembly::may_touch`] is true for pairs that touch by design: bodies that move together,

@@ -80,8 +80,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// True if the last submitted frame, if any, has been taken over.
     ///
     /// Call this at every tick. False means that main submitted the frame so late that it waits for the end of this
-    /// tick's slot: then submit no new frame for this tick, if a servo must not jump. If the result is true at least
-    /// at every second tick, both handlers run, since one counts the ticks and the other takes the frames over.
+    /// tick's slot: a frame submitted now would replace it, and a servo would jump. While the result is true at one of
+    /// any two consecutive ticks, both handlers run, since one counts the ticks and the other takes the frames over.
     #[inline(always)]
     pub fn is_taken(&self) -> bool {
         self.has_new_frame.get() == 0

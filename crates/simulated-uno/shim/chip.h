@@ -34,11 +34,11 @@ enum {
 	REG_UBRR0L = 0xc4, REG_UBRR0H = 0xc5, REG_UDR0 = 0xc6,
 };
 
-/* Returns simavr's part of this kind, such as "eeprom". Aborts if this libsimavr has none. */
-avr_io_t *chip_part(avr_t *avr, const char *kind);
+/* Returns simavr's peripheral of this kind, such as "eeprom". Aborts if this libsimavr has none. */
+avr_io_t *chip_peripheral(avr_t *avr, const char *kind);
 
-/* Returns the number of cycles from now until `cycle`, at least 1, as simavr's timers take
- * it. */
+/* Returns the number of cycles from now until `cycle`, at least 1: the delay for simavr's
+ * cycle timers. */
 uint64_t chip_cycles_until(const avr_t *avr, uint64_t cycle);
 
 /* A callback that simavr calls for each write or read of an I/O register. hook_write and

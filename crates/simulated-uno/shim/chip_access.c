@@ -24,7 +24,7 @@ void uno_power_cycle(struct uno *uno)
 
 void uno_set_boot_loader(struct uno *uno, bool on)
 {
-	uno->reset.boot_loader = on;
+	uno->reset.has_boot_loader = on;
 	if (uno->avr->cycle == 0) { /* not started yet: affects the current start, too */
 		uno->reset.mcusr = RESET_POWER_ON;
 		restart(uno, 0);

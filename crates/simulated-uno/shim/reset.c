@@ -8,7 +8,7 @@
 #define INITIAL_NOISE_STATE UINT64_C(0x2545f4914f6cdd1d)
 
 /* "The bit is reset by a Power-on Reset, or by writing a logic zero to the
- * flag" (11.9.1): a one written changes nothing. */
+ * flag" (11.9.1): writing a one has no effect. */
 static void write_mcusr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	struct reset *reset = param;
@@ -79,7 +79,7 @@ void reset_record(struct reset *reset, uint8_t causes, uint64_t now)
 		reset->mcusr = causes; /* stock simavr discards the earlier ones */
 	else
 		reset->mcusr |= causes;
-	if (reset->boot_loader)
+	if (reset->has_boot_loader)
 		reset->mcusr = 0;
 }
 
@@ -88,7 +88,7 @@ void reset_restore_mcusr(const struct reset *reset)
 	reset->avr->data[REG_MCUSR] = reset->mcusr;
 }
 
-/* Returns a byte of the generator xorshift64*. */
+/* Returns the next byte of a xorshift64* generator. */
 static uint8_t next_noise(struct reset *reset)
 {
 	reset->noise_state ^= reset->noise_state >> 12;

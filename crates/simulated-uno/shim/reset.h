@@ -22,7 +22,7 @@ struct reset_event { uint64_t cycle; uint8_t cause; };
 struct reset {
 	avr_t *avr;
 	bool data_sheet;
-	bool boot_loader;         /* a boot loader clears MCUSR before the firmware starts */
+	bool has_boot_loader;     /* a boot loader clears MCUSR before the firmware starts */
 	uint8_t requested_causes; /* causes of the requested reset, 0: none is requested */
 	bool power_cut_requested;
 	uint8_t mcusr;            /* MCUSR, which simavr's reset clears */

@@ -9,7 +9,7 @@ enum { /* WDTCSR */
 #define OSCILLATOR_HZ 128000u
 #define SHORTEST_PERIOD 2048u /* with WDP = 0, in cycles of the oscillator */
 #define MAX_WDP 9 /* higher values are reserved */
-#define CHANGE_CYCLES 4 /* length of the window for a change, after WDCE is set */
+#define CHANGE_WINDOW_CYCLES 4 /* WDE and WDP may change for so long after WDCE is set */
 
 /* The time-out in CPU cycles, given WDTCSR. */
 static uint64_t period_cycles(uint8_t control)
@@ -75,10 +75,10 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	if (watchdog->reset->mcusr & RESET_WATCHDOG)
 		control |= WDE; /* "WDE is overridden by WDRF in MCUSR" (11.9.2) */
 	if ((value & WDCE) && (value & WDE))
-		watchdog->change_window_end = cycle + CHANGE_CYCLES;
+		watchdog->change_window_end = cycle + CHANGE_WINDOW_CYCLES;
 	avr->data[address] = control;
 	if (!(control & WDIF))
-		watchdog->stock->watchdog.pending = 0; /* a time-out in this cycle sets WDIF again */
+		watchdog->stock->watchdog.pending = 0; /* a time-out in this cycle requests it again */
 	if (!is_on(old))
 		watchdog->counter_start = cycle;
 	schedule(watchdog);
@@ -93,8 +93,8 @@ static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
 }
 
 /* If WDE and WDIE are set, "Executing the corresponding interrupt vector will clear WDIE and
- * WDIF automatically by hardware (the Watchdog goes to System Reset Mode)" (11.9.2). simavr
- * would clear WDIE in interrupt mode, too, but not if it finds WDIF cleared. */
+ * WDIF automatically by hardware (the Watchdog goes to System Reset Mode)" (11.9.2). In
+ * interrupt mode this clears only WDIF, which also keeps simavr from clearing WDIE. */
 static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
 {
 	struct watchdog *watchdog = param;
@@ -113,7 +113,7 @@ void watchdog_attach(struct watchdog *watchdog, const struct instruction *instru
 		.instruction = instruction,
 		.interrupts = interrupts,
 		.reset = reset,
-		.stock = (avr_watchdog_t *)chip_part(avr, "watchdog"),
+		.stock = (avr_watchdog_t *)chip_peripheral(avr, "watchdog"),
 	};
 	avr_register_io(avr, &watchdog->io); /* precedes simavr's own watchdog in the list */
 	hook_write(avr, REG_WDTCSR, write_control, watchdog);

@@ -1,7 +1,7 @@
 //! An Arduino UNO for tests: an ATmega328P at 16 MHz, simulated by libsimavr, with an oscilloscope on its pins and a
 //! sender on its serial line.
 //!
-//! A firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show
+//! Firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show
 //! its stack, and cannot run faster than real time. In the simulation, time is a number of CPU cycles that
 //! passes as fast as the host can compute, and the same firmware with the same input gives the same edges to the
 //! cycle. Only [`Port`] runs in real time, for programs that expect a board on USB.
@@ -30,7 +30,7 @@
 //! Several [`Uno`]s may run at once on as many threads: the only state that libsimavr keeps outside an instance is
 //! the logger, which is set once.
 
-#![allow(unsafe_code)] // for the calls of C; the docs of `Uno` justify them
+#![allow(unsafe_code)] // for calls into C; the docs of `Uno` justify them
 
 mod adc;
 #[cfg(feature = "avr-gcc")]

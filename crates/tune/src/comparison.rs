@@ -39,11 +39,11 @@ pub struct GaitFigures {
     pub rate: f64,
     /// Name and value of the gait's smallest margin; the value is the sine of an angle.
     pub margin: (&'static str, f64),
-    /// Speed by the contact model, with ideal servos, mm/s or deg/s.
+    /// Speed predicted by the contact model, with ideal servos, mm/s or deg/s.
     pub predicted: f64,
     /// Speed with SG-90 servos and their dead band, simulated frame by frame, mm/s or deg/s.
     pub sg90: f64,
-    /// Speeds below which 5 %, 50 % and 95 % of the random robots are, mm/s or deg/s.
+    /// 5th, 50th and 95th percentiles of the speed on the random robots, mm/s or deg/s.
     pub speeds: [f64; 3],
 }
 

@@ -19,7 +19,7 @@ pub enum Model {
     Nano,
 }
 
-/// The facts known about a board before its boot loader is called.
+/// The facts known about a board before its boot loader is contacted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Target {
     /// The model that the user has named.
@@ -51,7 +51,7 @@ impl ImageTooLong {
 }
 
 impl Target {
-    /// The boot loaders that the board may have, in the order in which they are called.
+    /// The boot loaders that the board may have, in the order in which they are tried.
     pub fn loaders(self) -> &'static [LoaderKind] {
         match self.model {
             Some(Model::Uno) => &[LoaderKind::Optiboot],

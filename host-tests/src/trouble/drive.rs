@@ -47,7 +47,7 @@ impl<'a> Drive<'a> {
             robot,
             radio: Radio::new(link),
             wire: Wire::new([link.baud; 2]),
-            session: Session::new(start, true, false).with_driver(),
+            session: Session::new(start, true, false).driven_by_person(),
             start,
             rng: Rng::with_seed(link.seed),
             partial_line: String::new(),
@@ -120,7 +120,7 @@ impl<'a> Drive<'a> {
             }
             _ => {}
         }
-        self.session.end_overdue_question(instant);
+        self.session.time_out_request(instant);
         self.session.take_events();
         while let Some(line) = self.session.next_line(instant) {
             self.radio.write(format!("{line}\n").as_bytes(), now);

@@ -63,8 +63,8 @@ pub struct ExactConditions {
     /// The margins as sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2, which is negative for
     /// crossed crank tips.
     pub margins: [f64; 10],
-    /// The sliders' travels from their nominal lengths, mm.
-    pub travels_mm: [f64; 2],
+    /// The sliders' strokes: their lengths minus their nominal lengths, mm.
+    pub strokes_mm: [f64; 2],
     /// K2 of head and tail, mm.
     pub k2_mm: [f64; 2],
     /// True for each condition that is violated according to lizard-kinematics. Crossed crank tips count as a violated
@@ -126,7 +126,7 @@ impl ExactConditions {
         Ok(Self {
             are_violated,
             margins,
-            travels_mm: [solution.left.s, solution.right.s],
+            strokes_mm: [solution.left.s, solution.right.s],
             k2_mm: k2_values,
             limits: *robot.limits(),
             bands: [
@@ -166,8 +166,8 @@ impl ExactConditions {
             2..6 => (self.margins[index] - type1) / self.bands[index],
             6..10 => (self.margins[index] - leg) / self.bands[index],
             _ => {
-                let travel = self.travels_mm[index - 10];
-                (travel - stroke_min).min(stroke_max - travel) / self.bands[index]
+                let stroke = self.strokes_mm[index - 10];
+                (stroke - stroke_min).min(stroke_max - stroke) / self.bands[index]
             }
         })
     }

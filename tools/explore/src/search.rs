@@ -1,4 +1,4 @@
-//! Breadth-first search through all sequences of [`Action`]s, up to a number of states.
+//! Breadth-first search through all sequences of [`Action`]s, up to a maximum number of distinct states.
 //!
 //! The search processes all states that `n` actions reach before the states that `n + 1` actions reach, so the first
 //! sequence that breaks a rule is one of the shortest. There are as many threads as processors. Of a processed state,
@@ -83,15 +83,15 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
                 .collect()
         });
         let mut next_frontier = Vec::new();
-        let mut all_broken = Vec::new();
+        let mut broken_rules = Vec::new();
         for thread_result in thread_results {
             result.tried_action_count += thread_result.tried_action_count;
-            all_broken.extend(thread_result.broken_rules);
+            broken_rules.extend(thread_result.broken_rules);
             next_frontier.extend(thread_result.reached_states);
         }
         // Sorted, so that the result does not depend on which thread was faster.
-        all_broken.sort_by_key(|(step, _)| (step.previous_step, step.action_index));
-        for (step, broken_rule) in all_broken {
+        broken_rules.sort_by_key(|(step, _)| (step.previous_step, step.action_index));
+        for (step, broken_rule) in broken_rules {
             let entry = result.broken_rules.entry(broken_rule.rule);
             let (count, _) = entry.or_insert_with(|| {
                 let description = describe_sequence(&initial_states, &steps, &actions, step);
@@ -188,9 +188,9 @@ impl ThreadResult {
 /// Applies an action. A panic counts as a broken rule.
 fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     let result = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
-    result.unwrap_or_else(|reason| {
-        let message = reason.downcast_ref::<String>().cloned();
-        let message = message.or_else(|| reason.downcast_ref::<&str>().map(ToString::to_string));
+    result.unwrap_or_else(|payload| {
+        let message = payload.downcast_ref::<String>().cloned();
+        let message = message.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
         Err(BrokenRule::new(
             Rule::KeepsRunning,
             message.unwrap_or_default(),

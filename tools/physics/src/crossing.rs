@@ -8,11 +8,11 @@ use crate::figures::Displacement;
 use crate::surface::gait_purposes;
 use crate::table::Component;
 
-/// The distance of the nearest foot from the edge before and after the measured cycles, mm. Feet swing by 15 mm, and a
+/// The minimum distance of the feet from the edge before and after the measured cycles, mm. Feet swing by 15 mm, and a
 /// dome touches an edge of 2 mm when its middle is 11 mm away.
 const CLEARANCE_MM: f64 = 25.0;
-/// The turn after which the measurement of a gait that turns on the spot ends, deg; after half a turn, other feet are
-/// at the edge.
+/// The turn after which the measurement ends, deg: after half a turn, other feet are at the edge. Only gaits that turn
+/// on the spot are expected to reach it.
 const MAX_TURN_DEG: f64 = 180.0;
 
 /// An edge across the path of a gait, and the cycles in which it is crossed.
@@ -20,11 +20,11 @@ const MAX_TURN_DEG: f64 = 180.0;
 pub struct Crossing {
     /// The number of cycles to measure.
     pub cycle_count: u32,
-    /// True if all feet pass the edge; false for a gait that turns on the spot.
+    /// True if all feet pass the edge before the robot has turned by `MAX_TURN_DEG`.
     pub is_crossed: bool,
     /// The direction across the edge, in which the floor rises, deg counter-clockwise from ahead.
     heading_deg: f64,
-    /// The distance of the edge from the robot's place at the start, mm.
+    /// The distance of the edge from the place where the robot starts, mm.
     distance_mm: f64,
 }
 
@@ -42,22 +42,22 @@ impl Crossing {
             left,
             turn,
         };
-        let start =
+        let measurement_start =
             (0..unmeasured_cycles).fold(Place::START, |place, _| place.moved_by_travel(cycle));
         let is_turn_on_the_spot = !matches!(
             gait_purposes(cycle_displacement)[..],
             [Component::Ahead, ..]
         );
-        let mut end = start;
+        let mut end = measurement_start;
         for cycle_count in 1.. {
             end = end.moved_by_travel(cycle);
             let heading_deg = if is_turn_on_the_spot {
                 0.0
             } else {
-                direction_from(end, start)
+                direction_from(end, measurement_start)
             };
             // All feet are compared, since after an arc the order of the feet along the heading may differ.
-            let distance_mm = foot_distances_along(start, heading_deg)
+            let distance_mm = foot_distances_along(measurement_start, heading_deg)
                 .into_iter()
                 .fold(f64::MIN, f64::max)
                 + CLEARANCE_MM;
@@ -65,7 +65,7 @@ impl Crossing {
                 .into_iter()
                 .fold(f64::MAX, f64::min);
             let has_passed = nearest_mm > distance_mm + CLEARANCE_MM;
-            if has_passed || end.travel_from(start).turn.abs() >= MAX_TURN_DEG {
+            if has_passed || end.travel_from(measurement_start).turn.abs() >= MAX_TURN_DEG {
                 return Self {
                     cycle_count,
                     is_crossed: has_passed,
@@ -74,7 +74,7 @@ impl Crossing {
                 };
             }
         }
-        unreachable!("every gait that is walked moves")
+        unreachable!("a walking gait moves or turns in every cycle")
     }
 
     /// Returns a block of this height that forms the floor beyond the edge.

@@ -1,9 +1,9 @@
-//! Tests of the contact model against the physics engine rapier: with other friction, with legs mounted outward, and
-//! for a tuned gait.
+//! Tests of the contact model against the physics engine rapier: at two friction coefficients, with legs mounted
+//! outward, and for a tuned gait.
 //!
 //! The engine, rapier 0.36, computed the displacements without the model, for a chassis with inertia and four balls
-//! that are dragged over the floor. The engine is no longer compiled; its results stay, so that a wrong change of the
-//! model is noticed. Gaits that depend on inertia were simulated at a slower pace.
+//! that are dragged over the floor. rapier is no longer a dependency. Its results are reference values, so that a
+//! regression of the model is noticed. Gaits that depend on inertia were simulated at a slower pace.
 
 use lizard_physics::{Displacement, load_robot};
 use lizard_robot::{Body, Feet, Ground};
@@ -25,21 +25,21 @@ fn ground_with_280_g() -> Ground {
     }
 }
 
-/// Asserts that the model's displacement of each gait is within `mm` and `deg` of the engine's, `expected`.
-fn assert_agreement(ground: &Ground, expected: &Displacements, mm: f64, deg: f64) {
+/// Asserts that the model's displacement of each gait is within `max_mm` and `max_deg` of the engine's, `expected`.
+fn assert_agreement(ground: &Ground, expected: &Displacements, max_mm: f64, max_deg: f64) {
     let paper = load_robot("paper");
     for (name, displacement) in GAITS.into_iter().zip(expected) {
-        let by_model = Displacement::from(
+        let model_displacement = Displacement::from(
             paper
                 .gait(name)
                 .expect("the robot has this gait")
                 .simulate_cycle(ground)
                 .travel,
         );
-        let (distance, turn) = by_model.distance_to(&Displacement(*displacement));
+        let (distance, turn) = model_displacement.distance_to(&Displacement(*displacement));
         assert!(
-            distance <= mm && turn <= deg,
-            "{name}: {displacement:?} by the engine, {by_model:?} by the model, with {:?}",
+            distance <= max_mm && turn <= max_deg,
+            "{name}: {displacement:?} by the engine, {model_displacement:?} by the model, with {:?}",
             ground.drive
         );
     }
@@ -67,13 +67,13 @@ fn legs_mounted_outward_move_as_in_the_engine() {
 }
 
 #[test]
-fn the_tuned_gait_is_faster_than_walk_in_the_engine_too() {
+fn the_tuned_gait_agrees_with_rapier_and_is_faster_than_walk_in_mujoco() {
     let (paper, tuned) = (load_robot("paper"), load_robot("own-gaits"));
     let stride = tuned.gait("stride").expect("own-gaits.toml has this gait");
     let walk = paper.gait("walk").expect("paper.toml has this gait");
-    let by_model = Displacement::from(stride.simulate_cycle(&ground_with_280_g()).travel);
-    let (distance, turn) = by_model.distance_to(&Displacement([40.95, -0.44, 0.0]));
-    assert!(distance <= 0.5 && turn <= 0.3, "{by_model:?}");
+    let model_displacement = Displacement::from(stride.simulate_cycle(&ground_with_280_g()).travel);
+    let (distance, turn) = model_displacement.distance_to(&Displacement([40.95, -0.44, 0.0]));
+    assert!(distance <= 0.5 && turn <= 0.3, "{model_displacement:?}");
     let stored = lizard_physics::Figures::stored();
     let speed_of = |robot: &str, gait: &str, period: f64| {
         let level_case = lizard_physics::Case::ALL[0];

@@ -66,8 +66,8 @@ impl Observer {
         }
     }
 
-    /// Judges the promises that are due.
-    pub(crate) fn judge_due_promises(&mut self) {
+    /// Judges the promises whose time has ended.
+    pub(crate) fn judge_expired_promises(&mut self) {
         if let Some((from, until, has_pulses)) = self.pending.motion
             && self.now > until
         {
@@ -96,7 +96,7 @@ impl Observer {
     }
 
     /// Judges the promises about pulses at the start of a pulse.
-    pub(crate) fn judge_promises_about_pulse(&mut self, servo: usize) {
+    pub(crate) fn judge_pulse_promises(&mut self, servo: usize) {
         let now = self.now;
         if let Some((_, _, has_pulses)) = &mut self.pending.motion {
             has_pulses[servo] = true;
@@ -113,15 +113,15 @@ impl Observer {
         }
     }
 
-    /// True if a servo must wake in its rest pose after a restart now. Since the last complete pulse, the supply has
-    /// been good and main has been undisturbed for long enough to save the pose.
+    /// True if a servo must wake in its rest pose after a restart now: since its last complete pulse, the supply has
+    /// been good, and main has been undisturbed for long enough to save the pose.
     pub(crate) fn must_keep_rest_pose(&self, servo: usize) -> bool {
-        let last_complete_start = self.servos[servo].last_complete_start;
+        let pulse_start = self.servos[servo].last_complete_pulse_start;
         let min_good_mv = self.limits.min_good_mv();
         self.limits.is_memory_reliable
-            && self.now - last_complete_start > MAX_SAVE_TIME
-            && self.supply.is_good_since(last_complete_start, min_good_mv)
-            && self.disturbed_until <= last_complete_start
+            && self.now - pulse_start > MAX_SAVE_TIME
+            && self.supply.is_good_since(pulse_start, min_good_mv)
+            && self.disturbed_until <= pulse_start
             && !self.has_unsaved_settings
     }
 }

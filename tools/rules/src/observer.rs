@@ -329,7 +329,7 @@ impl Observer {
         self.now = self.now.max(time);
         self.permission.advance(self.now);
         self.judge_end_of_pulses();
-        self.judge_due_promises();
+        self.judge_expired_promises();
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = self.now - 280 * MS;
         let is_undisturbed = low_since > self.started_at && self.disturbed_until < low_since;

@@ -30,7 +30,7 @@ impl Observer {
         let servos = self.servos.map(|servo| {
             let has_pulses = self.now - servo.last_start < 30 * MS;
             (
-                servo.last_complete_width >> 11,
+                servo.last_complete_width >> 11, // in classes of 128 us
                 has_pulses,
                 servo.interruption,
                 servo.was_hung,

@@ -115,7 +115,7 @@ pub(crate) struct ServoHistory {
     /// The width of the last complete pulse, cycles. A complete pulse is neither cut short nor delayed at its end.
     pub last_complete_width: u32,
     /// The start of the last complete pulse.
-    pub last_complete_start: Time,
+    pub last_complete_pulse_start: Time,
     pub interruption: Interruption,
     /// True if a hang interrupted the pulses after the last complete pulse.
     pub was_hung: bool,
@@ -132,7 +132,7 @@ impl ServoHistory {
         last_start: NEVER,
         last_end: NEVER,
         last_complete_width: 0,
-        last_complete_start: NEVER,
+        last_complete_pulse_start: NEVER,
         interruption: Interruption::Unknown,
         was_hung: false,
         is_position_lost: false,
@@ -199,11 +199,11 @@ impl Observer {
         if is_first {
             self.judge_first_pulse(pulse);
         }
-        self.judge_promises_about_pulse(pulse.servo);
+        self.judge_pulse_promises(pulse.servo);
         let change = pulse.width.abs_diff(servo.last_complete_width);
         let is_complete = !pulse.is_cut && !pulse.is_end_late;
         let is_comparable =
-            servo.last_complete_start > NEVER && !(is_first && servo.is_recalibrated);
+            servo.last_complete_pulse_start > NEVER && !(is_first && servo.is_recalibrated);
         if is_complete && is_comparable && change > self.limits.max_change_cycles[pulse.servo] {
             let observation = format!(
                 "{name} has {} cycles and then {}",
@@ -225,7 +225,7 @@ impl Observer {
         if is_complete {
             *servo = ServoHistory {
                 last_complete_width: pulse.width,
-                last_complete_start: now,
+                last_complete_pulse_start: now,
                 interruption: if servo.blocked_until > now {
                     Interruption::Unknown
                 } else {
@@ -268,15 +268,15 @@ impl Observer {
             self.fail(Rule::PulsesPermitted, format!("{name} begins"));
         }
         // The frame after a hang is completed even if a `rest` command arrives within it.
-        let hung_until = self.started_at.max(servo.last_complete_start);
+        let hung_until = self.started_at.max(servo.last_complete_pulse_start);
         let has_rested =
             self.rest_command_at > hung_until && now - self.rest_command_at > MAX_TIME_TO_REST;
         let is_after_hang = servo.was_hung
             && !servo.is_position_lost
-            && servo.last_complete_start > NEVER
-            && now - servo.last_complete_start < 1_000 * MS
+            && servo.last_complete_pulse_start > NEVER
+            && now - servo.last_complete_pulse_start < 1_000 * MS
             && !has_rested;
-        let has_no_command = self.last_motion_command_at < servo.last_complete_start;
+        let has_no_command = self.last_motion_command_at < servo.last_complete_pulse_start;
         let change = pulse.width.abs_diff(servo.last_complete_width);
         if is_after_hang
             && has_no_command

@@ -1,8 +1,8 @@
 //! Renders a film of a walk with a known displacement, for the page's tests. Writes FOLDER/film.y4m, which a browser
 //! uses as its camera; the same pictures in FOLDER/pictures; and the true displacement per cycle in FOLDER/truth.json.
 //!
-//! `studio FOLDER WIDTH CYCLES [HIDDEN TAG]...`: WIDTH is in pixels. The robot walks CYCLES cycles of the paper's
-//! `walk` and rests before and after them. Tags with the ids HIDDEN TAG are covered.
+//! `studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...`: WIDTH is in pixels. The robot walks CYCLES cycles of the paper's
+//! `walk` and rests before and after them. Each HIDDEN_TAG is the id of a tag that is covered.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -13,11 +13,11 @@ use lizard_studio::encode_jpeg;
 use lizard_studio::render::Studio;
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
-/// Pictures per second. Chromium shows a late picture at the right time if the delay is shorter than one picture, so a
-/// low rate is reliable on a busy machine.
+/// Pictures per second. Chromium shows a late picture at the right time if the delay is shorter than the interval
+/// between pictures, so a low rate is reliable on a busy machine.
 const PICTURES_PER_S: u32 = 10;
-/// The value of the two colour planes of a grey picture.
-const NEUTRAL_COLOUR: u8 = 128;
+/// The value of both chroma planes of a grey picture.
+const NEUTRAL_CHROMA: u8 = 128;
 /// Standard deviations of a cycle's displacement from the gait's: mm forward, mm to the left, rad.
 const CYCLE_DEVIATION: [f64; 3] = [0.1, 0.1, 0.002];
 /// Quality of the JPEG pictures, 1 to 100.
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut next_argument = || {
         arguments
             .next()
-            .ok_or("usage: studio FOLDER WIDTH CYCLES [HIDDEN TAG]...")
+            .ok_or("usage: studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...")
     };
     let folder = PathBuf::from(next_argument()?);
     let (width, cycles): (usize, usize) = (next_argument()?.parse()?, next_argument()?.parse()?);
@@ -65,12 +65,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::write(pictures.join(format!("{seconds:.4}s.jpg")), jpeg)?;
         film.extend(b"FRAME\n");
         film.extend(picture.grey());
-        film.resize(film.len() + film_width * film_height / 2, NEUTRAL_COLOUR);
+        film.resize(film.len() + film_width * film_height / 2, NEUTRAL_CHROMA);
     }
     fs::write(folder.join("film.y4m"), film)?;
-    let truth = format!(
+    let truth_json = format!(
         "{{\"forward\":{},\"left\":{},\"turn\":{}}}\n",
         truth.forward, truth.left, truth.turn
     );
-    Ok(fs::write(folder.join("truth.json"), truth)?)
+    Ok(fs::write(folder.join("truth.json"), truth_json)?)
 }

@@ -1,7 +1,7 @@
 //! The workspace of head and tail: the part of the plane in which a path of the end point can be drawn.
 //!
-//! The other end is at neutral. A point is allowed if the inverse kinematics has crank angles for it
-//! and the limits allow the pose at these angles.
+//! The other end is at neutral. A point is allowed if the inverse kinematics has a solution there
+//! and the limits allow its pose.
 
 use lizard_kinematics::{End, Vector, wrap};
 use lizard_robot::Robot;
@@ -11,7 +11,7 @@ use tsify::Tsify;
 /// Number of grid steps across the plane, whose width is twice the longest reach.
 const STEPS_ACROSS: i32 = 160;
 /// Width of the rim of points around the allowed points, in grid points.
-const RIM_POINT_COUNT: i32 = 2;
+const RIM_WIDTH: i32 = 2;
 /// Largest distance between two points that count as the same, mm.
 const POINT_TOLERANCE_MM: f64 = 1e-6;
 
@@ -47,17 +47,18 @@ impl Workspace {
         let point_at =
             |column: i32, row: i32| [f64::from(column) * spacing, f64::from(row) * spacing];
         let half_steps = STEPS_ACROSS / 2;
-        let row_of_plane = |row: i32| -> Vec<bool> {
+        let allowed_in_row = |row: i32| -> Vec<bool> {
             let columns = -half_steps..=half_steps;
             columns
                 .map(|column| is_point_allowed(robot, end, point_at(column, row)))
                 .collect()
         };
-        let plane: Vec<Vec<bool>> = (-half_steps..=half_steps).map(row_of_plane).collect();
+        let allowed_by_row: Vec<Vec<bool>> =
+            (-half_steps..=half_steps).map(allowed_in_row).collect();
         let is_allowed = |column: i32, row: i32| {
             let row = usize::try_from(row + half_steps)
                 .ok()
-                .and_then(|row| plane.get(row));
+                .and_then(|row| allowed_by_row.get(row));
             let column = usize::try_from(column + half_steps).ok();
             row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
         };
@@ -70,7 +71,7 @@ impl Workspace {
                 .rev()
                 .find(|index| has_allowed_points(*index))
                 .unwrap_or(0);
-            (smallest - RIM_POINT_COUNT)..=(largest + RIM_POINT_COUNT)
+            (smallest - RIM_WIDTH)..=(largest + RIM_WIDTH)
         };
         let columns =
             range_with_rim(&|column| (-half_steps..=half_steps).any(|row| is_allowed(column, row)));

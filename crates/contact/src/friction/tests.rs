@@ -45,7 +45,7 @@ fn cost_of(pads: &Pads, displacement: &Displacement) -> f64 {
 /// largest energy that their torques can release from the springs. Returns the net force and torque, and the duality
 /// gap: the displacement's cost minus this lower bound.
 fn dual_certificate_of(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
-    let eps = max_component(&pads.swings) * MIN_SMOOTHING;
+    let eps = max_abs_component(&pads.swings) * MIN_SMOOTHING;
     let (mut lower_bound, mut net_force) = (0.0, [0.0; 3]);
     for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
         let weights = pads.slide_weights(slide);
@@ -82,7 +82,7 @@ fn assert_minimal(pads: &Pads) {
         "the forces do not balance: {net_force:?}"
     );
     assert!(
-        duality_gap.abs() < 1e-5 * max_component(&pads.swings),
+        duality_gap.abs() < 1e-5 * max_abs_component(&pads.swings),
         "gap {duality_gap}"
     );
 }

@@ -23,7 +23,7 @@ pub enum Command {
     Status,
     /// Print all settings.
     Cal,
-    /// Print the pose once every this many frames; 0 ends the reports.
+    /// Print the pose at this interval in frames; 0 stops the reports.
     Watch(u16),
     /// An order to the robot.
     Order(Order),

@@ -51,7 +51,7 @@ fn a_cycle_is_measured_to_a_fifth_of_a_millimetre_and_half_a_degree() {
     for name in ["walk", "left"] {
         let gait = paper_gait(name);
         let (measured, camera) = measure_film(&gait, 5, 12.0, Variation::default(), &mut rng);
-        assert!(measured.cycles.len() >= 3, "{:?}", measured.calm_times);
+        assert!(measured.cycles.len() >= 3, "{:?}", measured.cycles);
         for (i, (mean, truth)) in means_and_truths(&measured, &gait).into_iter().enumerate() {
             let max_error = [0.2, 0.2, 0.5][i];
             assert!(

@@ -87,8 +87,8 @@ impl PoseLine {
         let (head, tail) = (solution.head_point(), solution.tail_point());
         let passive = solution.passive_joints();
         let [lf, rf, rh, lh] = solution.legs.map(|leg| LegAngles {
-            follower: leg.follower(),
-            coupler: leg.coupler(),
+            follower: leg.follower_angle(),
+            coupler: leg.coupler_angle(),
         });
         Self {
             seconds,
@@ -202,7 +202,7 @@ pub fn format_page(robot: &Robot, pose: &Pose, outcome: &Result<Solution, Infeas
         Ok(solution) => solution,
     };
     let (head, tail) = (solution.head_point(), solution.tail_point());
-    let legs = solution.legs.map(|leg| round_3(leg.follower()));
+    let legs = solution.legs.map(|leg| round_3(leg.follower_angle()));
     let round_4 = |margin: f64| round_decimals(margin, 4);
     let margins = &solution.margins;
     let _ = write!(

@@ -31,8 +31,8 @@ fn flash_needs_no_built_firmware_and_fails_only_at_the_missing_port() {
 fn an_image_of_any_robot_is_made_in_an_empty_folder() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     for (name, options) in [("large", &[][..]), ("unequal", &["--only-robot"])] {
-        let file_options = ["flash", "image", "--robot", name, "--output", "x.hex"];
-        let arguments = [&file_options, options].concat();
+        let file_arguments = ["flash", "image", "--robot", name, "--output", "x.hex"];
+        let arguments = [&file_arguments, options].concat();
         let start = Instant::now();
         let outcome = run_in(folder.path(), &arguments, "");
         assert!(
@@ -49,7 +49,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
         let text = fs::read_to_string(folder.path().join("x.hex")).expect("the file is readable");
         let pipe_arguments = [&["flash", "image", "--robot", name], options].concat();
         let piped_text = run_in(folder.path(), &pipe_arguments, "").expect_success();
-        assert!(piped_text == text, "the pipe got another image");
+        assert!(piped_text == text, "the piped image equals the file");
         // The file is read by the simulator's loader, which shares no code with the writer.
         let image = simulated_uno::Image::parse_hex(&text).expect("the image is Intel HEX");
         let robot = Robot::load(robot_path(name)).expect("the robot file is valid");

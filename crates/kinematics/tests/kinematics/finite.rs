@@ -111,7 +111,7 @@ proptest! {
         if let (Ok(huge_solution), Ok(reduced_solution)) = (huge_solution, reduced_solution) {
             prop_assert_eq!(huge_solution.margins, reduced_solution.margins);
             prop_assert_eq!(huge_solution.head_point(), reduced_solution.head_point());
-            prop_assert_eq!(huge_solution.legs[servo].follower(), reduced_solution.legs[servo].follower());
+            prop_assert_eq!(huge_solution.legs[servo].follower_angle(), reduced_solution.legs[servo].follower_angle());
         }
     }
 }

@@ -61,7 +61,7 @@ proptest! {
         prop_assert!((solution.head_point() - head).length() < 1e-9);
         prop_assert!((solution.tail_point() - tail).length() < 1e-9);
         for (leg, theta) in solution.legs.iter().zip(pose) {
-            prop_assert!(wrap(leg.follower() - theta).abs() < 1e-9);
+            prop_assert!(wrap(leg.follower_angle() - theta).abs() < 1e-9);
         }
     }
 

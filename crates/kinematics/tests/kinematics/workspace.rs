@@ -147,10 +147,10 @@ fn with_a_wide_base_the_inscribed_circle_is_centred_between_the_shafts() {
 fn the_conditioning_index_vanishes_where_the_inscribed_circle_touches_the_rim() {
     let circle = Workspace::of(&PAPER_HEAD).inscribed_circle().unwrap();
     for shaft in [PAPER_HEAD.left_shaft(), PAPER_HEAD.right_shaft()] {
-        let shaft_line = circle.centre - shaft;
+        let shaft_to_centre = circle.centre - shaft;
         for side in [1.0, -1.0] {
             let rim_point =
-                circle.centre + shaft_line * (side * circle.radius / shaft_line.length());
+                circle.centre + shaft_to_centre * (side * circle.radius / shaft_to_centre.length());
             let solution = PAPER_HEAD.inverse(rim_point).unwrap()[0];
             assert_eq!(solution.working_mode, WorkingMode::OUTWARD);
             let pose = PAPER_HEAD.forward_in(

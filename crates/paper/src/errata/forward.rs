@@ -37,21 +37,21 @@ pub const EQUATIONS: &[Equation] = &[
     .with_correction(
         "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
         |sample| {
-            let Some(vanishing_theta4) = theta4_of_vanishing_a(sample) else {
+            let Some(theta4_at_zero_a) = find_theta4_at_zero_a(sample) else {
                 return Some(0.0);
             };
             let theta1 = sample.solution.pose.theta1;
             let Ok(pose) = sample
                 .lizard
                 .end(End::Head)
-                .forward(theta1, vanishing_theta4 * 180.0 / PI)
+                .forward(theta1, theta4_at_zero_a * 180.0 / PI)
             else {
                 return Some(0.0);
             };
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             let [theta1, theta2, theta3] =
                 [theta1, theta2, theta3].map(|degrees| degrees * (PI / 180.0));
-            Some(head_gap(sample, [theta1, theta2, theta3, vanishing_theta4]))
+            Some(head_gap(sample, [theta1, theta2, theta3, theta4_at_zero_a]))
         },
     )
     .with_special_case("θ4 within 1e-9° of A = 0", error_near_vanishing_a),
@@ -220,7 +220,7 @@ fn def_coefficients(sample: &Sample, base_sign: f64) -> (f64, f64, f64) {
 }
 
 /// The theta4 (rad) at which A is 0 for the sample's theta1; `None` if there is no such angle from -90 to 90 degrees.
-fn theta4_of_vanishing_a(sample: &Sample) -> Option<f64> {
+fn find_theta4_at_zero_a(sample: &Sample) -> Option<f64> {
     let a_of = |theta4: f64| abc_coefficients(sample, theta4).0;
     let angle_at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
     let start = (-90..90).find(|&i| a_of(angle_at(i)) * a_of(angle_at(i + 1)) < 0.0)?;
@@ -238,10 +238,10 @@ fn theta4_of_vanishing_a(sample: &Sample) -> Option<f64> {
 
 /// The error of the printed theta3 close to the theta4 at which A is 0; 0 for a sample without such a theta4.
 fn error_near_vanishing_a(sample: &Sample) -> Option<f64> {
-    let Some(vanishing_theta4) = theta4_of_vanishing_a(sample) else {
+    let Some(theta4_at_zero_a) = find_theta4_at_zero_a(sample) else {
         return Some(0.0);
     };
-    let theta4 = vanishing_theta4 + (sample.random[0] - 0.5) * 2e-9 * PI / 180.0;
+    let theta4 = theta4_at_zero_a + (sample.random[0] - 0.5) * 2e-9 * PI / 180.0;
     let Ok(exact_pose) = sample
         .lizard
         .end(End::Head)

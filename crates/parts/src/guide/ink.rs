@@ -15,8 +15,8 @@ const LINE_HEIGHT: f64 = 16.0;
 /// SVG attributes of the labels' text.
 const FONT_ATTRIBUTES: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
-/// A line through points of the drawing, mm, before it is scaled to the page.
-pub(super) type Polyline = Vec<(f64, f64)>;
+/// The vertices of a closed outline in the drawing, mm, before it is scaled to the page.
+pub(super) type Ring = Vec<(f64, f64)>;
 /// The point of the drawing that a label names, mm, and the label.
 pub(super) type PlacedLabel<'a> = ((f64, f64), &'a Label);
 
@@ -41,9 +41,9 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The smallest frame around some points, with a margin in a close view.
+    /// The smallest frame around some points, with a margin in a close-up.
     pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, is_close_up: bool) -> Self {
-        /// Margin of a close view, mm.
+        /// Margin of a close-up, mm.
         const CLOSE_UP_MARGIN: f64 = 12.0;
         let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
         let margin = if is_close_up { CLOSE_UP_MARGIN } else { 0.0 };
@@ -62,12 +62,12 @@ impl Frame {
 #[derive(Default)]
 pub(super) struct Drawing {
     /// The colour and the loops of each shape, and true if its edge is drawn.
-    shapes: Vec<(String, Vec<Polyline>, bool)>,
+    shapes: Vec<(String, Vec<Ring>, bool)>,
 }
 
 impl Drawing {
     /// Draws a polygon over everything drawn so far; loops within its outer loop are holes.
-    pub(super) fn draw_polygon(&mut self, loops: &[Polyline], colour: [f64; 3], has_edge: bool) {
+    pub(super) fn draw_polygon(&mut self, loops: &[Ring], colour: [f64; 3], has_edge: bool) {
         let [r, g, b] = colour.map(|channel| channel.clamp(0.0, 255.0).round() as u8);
         self.shapes
             .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), has_edge));
@@ -98,22 +98,22 @@ impl Drawing {
             }
             let mut data = String::new();
             let mut position = (0, 0);
-            for page_loop in loops {
+            for ring in loops {
                 let mut start = None;
-                for (x, y) in page_loop {
+                for (x, y) in ring {
                     let point = (
                         tenths_of(x - low.x, left_offset),
                         tenths_of(y - low.y, MARGIN),
                     );
-                    let (x, y) = (point.0 - position.0, point.1 - position.1);
+                    let (dx, dy) = (point.0 - position.0, point.1 - position.1);
                     // After the first point each pair is a relative line, and a minus sign separates numbers.
-                    let _ = match (start, x < 0) {
-                        (None, _) => write!(data, "m{x}"),
-                        (Some(_), _) if (x, y) == (0, 0) => continue,
-                        (Some(_), true) => write!(data, "{x}"),
-                        (Some(_), false) => write!(data, " {x}"),
+                    let _ = match (start, dx < 0) {
+                        (None, _) => write!(data, "m{dx}"),
+                        (Some(_), _) if (dx, dy) == (0, 0) => continue,
+                        (Some(_), true) => write!(data, "{dx}"),
+                        (Some(_), false) => write!(data, " {dx}"),
                     };
-                    let _ = write!(data, "{}{y}", if y < 0 { "" } else { " " });
+                    let _ = write!(data, "{}{dy}", if dy < 0 { "" } else { " " });
                     start.get_or_insert(point);
                     position = point;
                 }
@@ -127,7 +127,7 @@ impl Drawing {
              width=\"{width}\" height=\"{height}\">\n<style>\n"
         );
         for (class, (colour, has_edge)) in styles.into_iter().enumerate() {
-            // A thin line of a wall's own colour closes the seams between walls.
+            // Without an edge, a thin stroke in the polygon's own colour closes the seams to its neighbours.
             let (stroke, stroke_width) = if has_edge { ("#333", 5) } else { (colour, 4) };
             let style = format!("fill:{colour};stroke:{stroke};stroke-width:{stroke_width}");
             let _ = writeln!(text, ".c{class}{{{style}}}");
@@ -181,27 +181,27 @@ fn write_column(text: &mut String, labels: &[PlacedLabel], is_left: bool, width:
         let max_y = height - (count - index as f64) * LINE_HEIGHT + 8.0;
         let text_y = (y + 4.0).min(max_y).max(min_y);
         min_y = text_y + LINE_HEIGHT;
-        let (edge, end, anchor) = match is_left {
+        let (text_x, line_start_limit, anchor) = match is_left {
             true => (8.0, LABEL_MARGIN - 4.0, "start"),
             false => (width - 8.0, width - LABEL_MARGIN + 4.0, "end"),
         };
         // The line begins about where the text ends.
         let text_width = 6.4 * label.text.chars().count() as f64;
         let line_start = if is_left {
-            edge + text_width
+            text_x + text_width
         } else {
-            edge - text_width
+            text_x - text_width
         };
         let line_start = if is_left {
-            line_start.min(end)
+            line_start.min(line_start_limit)
         } else {
-            line_start.max(end)
+            line_start.max(line_start_limit)
         };
         let _ = writeln!(
             text,
             "<path d=\"M{line_start:.1} {:.1}L{x:.1} {y:.1}\" stroke=\"#111\" stroke-width=\"0.8\"/>\
              <circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\"/>\
-             <text x=\"{edge}\" y=\"{text_y:.1}\" text-anchor=\"{anchor}\" {FONT_ATTRIBUTES}>{}</text>",
+             <text x=\"{text_x}\" y=\"{text_y:.1}\" text-anchor=\"{anchor}\" {FONT_ATTRIBUTES}>{}</text>",
             text_y - 4.0,
             label.text
         );

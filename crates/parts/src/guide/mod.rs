@@ -32,7 +32,7 @@ use crate::part::Part;
 const EXPLODED_LIFT: f64 = 45.0;
 /// Width of a step's picture, with the labels on its sides, pixels.
 const PICTURE_WIDTH: f64 = 950.0;
-/// Index of the servo whose corner is printed first and shown in close views: A1.
+/// Index of the servo whose corner is printed first and shown in close-ups: A1.
 pub const CORNER_SERVO: usize = 0;
 
 /// The guide's introduction.
@@ -265,7 +265,7 @@ impl StepScene<'_> {
     }
 }
 
-/// True if a body belongs to the corner that close views show.
+/// True if a body belongs to the corner that close-ups show.
 fn is_at_corner(body: &Body) -> bool {
     let (name, leg) = servo_and_leg_names(CORNER_SERVO);
     match body.mount {

@@ -11,7 +11,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::layers::outline::{Loop, Outline};
 
-use super::ink::{Drawing, Frame, Label, Polyline};
+use super::ink::{Drawing, Frame, Label, Ring};
 
 /// A body in a picture.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +121,7 @@ impl Eye {
 }
 
 /// A wall: its distance from the eye, its outline and its colour.
-type Wall = (f64, Polyline, [f64; 3]);
+type Wall = (f64, Ring, [f64; 3]);
 
 /// A layer of a body in the picture.
 struct Layer {
@@ -173,12 +173,12 @@ pub fn picture(
                         .map(|point| eye.project(*point, high))
                         .collect()
                 };
-                let loops: Vec<Polyline> = layer.loops.iter().map(page_points_of).collect();
+                let loops: Vec<Ring> = layer.loops.iter().map(page_points_of).collect();
                 drawing.draw_polygon(&loops, layer.colour, true);
             }
         }
     }
-    // The frame is around all bodies, or in a close view around those that are not grey.
+    // The frame is around all bodies, or in a close-up around those that are not grey.
     let framed_layers = layers
         .iter()
         .filter(|layer| !view.is_close_up || !layer.is_grey);

@@ -10,7 +10,7 @@ use crate::bodies::assembly::Assembly;
 pub struct Scene {
     /// The model's name.
     pub name: String,
-    /// Length by which each foot is too long, mm, in servo order.
+    /// Excess length of each foot, mm, servo order.
     pub excess_lengths: [f64; 4],
     /// Stiffness of a foot's leaf, N/mm.
     pub leaf_stiffness: f64,
@@ -29,8 +29,8 @@ pub struct Scene {
     pub floor: Floor,
     /// The shape of the robot's pads.
     pub pads: Pads,
-    /// Factor on the masses of all parts that move on the chassis; the mass that they lose is
-    /// added to the chassis.
+    /// Factor applied to the masses of all parts that move relative to the chassis; the mass removed is added to the
+    /// chassis.
     pub limb_mass_factor: f64,
     /// True if the servos drive in bursts, as analog ones do.
     pub drives_in_bursts: bool,
@@ -83,7 +83,7 @@ pub enum Pads {
 /// A tension spring in a slotted strut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrutSpring {
-    /// Force while the leg does not lag, N.
+    /// Force of the spring while it holds the leg's screw at its end of the slot, N.
     pub preload: f64,
     /// Rate of the spring, N/mm.
     pub rate: f64,
@@ -106,9 +106,9 @@ pub struct Course {
 }
 
 /// Time of the motion from neutral to the gait's first pose, s.
-const APPROACH_S: f64 = 0.4;
+const APPROACH_DURATION_S: f64 = 0.4;
 /// Time to wait in the gait's first pose until the body is at rest, s.
-const SETTLE_S: f64 = 0.3;
+const SETTLE_DURATION_S: f64 = 0.3;
 
 impl Course {
     /// Returns the course of `cycles` cycles of a gait at its own pace, after a slow approach from
@@ -123,13 +123,13 @@ impl Course {
             std::array::from_fn(|i| lizard_kinematics::wrap(angles[i] - robot.servos()[i].neutral))
         };
         let start_sweeps = sweeps_of(angles_at(0.0));
-        let start_s = APPROACH_S + SETTLE_S;
+        let start_s = APPROACH_DURATION_S + SETTLE_DURATION_S;
         let period = gait.period();
         let end_s = start_s + f64::from(cycles) * period;
         let targets_at = |frame: usize| {
             let time_s = frame as f64 / FRAMES_PER_SECOND;
             match time_s < start_s {
-                true => start_sweeps.map(|sweep| sweep * (time_s / APPROACH_S).min(1.0)),
+                true => start_sweeps.map(|sweep| sweep * (time_s / APPROACH_DURATION_S).min(1.0)),
                 false => sweeps_of(angles_at(time_s - start_s)),
             }
         };

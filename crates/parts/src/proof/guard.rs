@@ -192,12 +192,8 @@ impl<'a> Guard<'a> {
         let (leg, zero) = (&self.robot.lizard().leg, IntervalDual::constant(0.0));
         let violates_leg = servos.iter().any(|&servo| {
             let end = End::of_servo(servo);
-            let bounds = leg
-                .pose_of_direction(end, zero, bounds.directions[servo])
-                .margin;
-            let middle = leg
-                .pose_of_direction(end, 0.0, middle.directions[servo])
-                .margin;
+            let bounds = leg.pose_at(end, zero, bounds.directions[servo]).margin;
+            let middle = leg.pose_at(end, 0.0, middle.directions[servo]).margin;
             is_violated((Check::LEG[servo], bounds, middle))
         });
         let violates_end = |end: End| {

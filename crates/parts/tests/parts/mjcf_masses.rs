@@ -8,7 +8,7 @@ use roxmltree::Document;
 use crate::mjcf_reader::{bodies, child, mjcf_with, neutral_solution, numbers};
 use crate::{ROBOTS, robot_with};
 
-/// The mass of all bodies of a MuJoCo file together, g, and their mass centre: forward, left, above the plate, mm.
+/// The total mass of the bodies in a MuJoCo file, g, and their centre of mass, mm: forward, left, above the plate.
 pub fn mass_and_centre(text: &str) -> (f64, [f64; 3]) {
     let document = Document::parse(text).expect("the file is well-formed XML");
     let (mut mass, mut moment) = (0.0, [0.0; 3]);
@@ -29,8 +29,8 @@ pub fn mass_and_centre(text: &str) -> (f64, [f64; 3]) {
     (mass, [forward, -right, up - plate_height])
 }
 
-/// The robot of a file with its mass, g, and its mass centre, mm, replaced.
-fn robot_with_body(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
+/// Loads a robot file with another mass (g) and centre of mass (mm).
+fn robot_with_mass(name: &str, mass: f64, [ahead, left]: [f64; 2]) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
     let (text_before, text_after) = text
@@ -52,7 +52,7 @@ fn mass_and_mass_centre_are_those_of_robot_toml() {
             (500.0, [20.0, -9.0]),
             (350.0, [-15.0, 0.0]),
         ] {
-            let robot = robot_with_body(name, mass, centre);
+            let robot = robot_with_mass(name, mass, centre);
             let bill = Bill::of(&Assembly::new(&robot), &[], &neutral_solution(&robot));
             let (grams, [ahead, left, up]) = mass_and_centre(&mjcf_with(&robot, |_| {}));
             // The mesh replaces each arc by chords, so it loses a little volume.
@@ -74,8 +74,8 @@ fn the_mass_of_a_leg_in_the_contact_model_matches_that_of_its_parts() {
         let document = Document::parse(&text).expect("the file is well-formed XML");
         let ground = robot.ground();
         for leg in LEG_NAMES {
-            let mass_and_lever_arm = |noun: &str| {
-                let name = format!("{noun} {leg}");
+            let mass_and_lever_arm = |part: &str| {
+                let name = format!("{part} {leg}");
                 let mut nodes = document.descendants();
                 let body = nodes.find(|node| {
                     node.has_tag_name("body") && node.attribute("name") == Some(&*name)
@@ -88,9 +88,9 @@ fn the_mass_of_a_leg_in_the_contact_model_matches_that_of_its_parts() {
             // centres move by a share of the pad's motion.
             let carried_mass = mass_and_lever_arm("foot").0 + mass_and_lever_arm("leg coupler").0;
             let turning_masses = ["crank", "follower"].map(mass_and_lever_arm);
-            let turning_masses =
+            let equivalent_masses =
                 turning_masses.map(|(mass, lever_arm)| mass * 1e3 * lever_arm / ground.feet.reach);
-            let grams = 1e3 * (carried_mass + turning_masses[0] + turning_masses[1]);
+            let grams = 1e3 * (carried_mass + equivalent_masses[0] + equivalent_masses[1]);
             let model_grams = ground.body.leg_mass();
             assert!(
                 (grams / model_grams - 1.0).abs() < 0.25,

@@ -31,8 +31,8 @@ impl Bars {
     /// Converts a gait to bars; `None` if a leg stands still or follows a path. A reversed gait
     /// becomes the bars of the same movement.
     pub(crate) fn of(gait: &Gait) -> Option<Self> {
-        let pick_larger = |max: f64, leg: f64| max.max(leg.abs());
-        let amplitudes = gait.strides.each_ref().map(|leg| leg.amplitude);
+        let pick_larger = |max: f64, leg_amplitude: f64| max.max(leg_amplitude.abs());
+        let amplitudes = gait.strides.each_ref().map(|stride| stride.amplitude);
         let amplitude = amplitudes.into_iter().fold(0.0, pick_larger);
         let mut bars = Self {
             name: gait.name.clone(),
@@ -41,7 +41,7 @@ impl Bars {
             duty: 0.75,
             amplitude,
             start: [0.0; 4],
-            gain: amplitudes.map(|leg| leg / amplitude),
+            gain: amplitudes.map(|leg_amplitude| leg_amplitude / amplitude),
         };
         for (start, stride) in bars.start.iter_mut().zip(&gait.strides) {
             match stride.waveform {

@@ -46,7 +46,7 @@ fn every_gait_of_the_papers_robot_equals_its_snapshot() {
         assert_eq!(
             stored.lines().count(),
             current.lines().count(),
-            "{path}: bless it with BLESS_GAITS=1"
+            "{path} and the gait have different numbers of rows. If this is intended, run with BLESS_GAITS=1."
         );
     }
 }
@@ -57,11 +57,11 @@ fn no_snapshot_outlives_its_gait() {
     for entry in std::fs::read_dir(FOLDER).expect(FOLDER) {
         let name = entry.expect(FOLDER).file_name();
         let name = name.to_string_lossy();
-        let gait = name
+        let gait_name = name
             .strip_suffix(".csv")
             .unwrap_or_else(|| panic!("{FOLDER}/{name} is not a snapshot"));
         assert!(
-            robot.gait(gait).is_some(),
+            robot.gait(gait_name).is_some(),
             "{FOLDER}/{name} belongs to no gait"
         );
     }

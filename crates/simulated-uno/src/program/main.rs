@@ -115,7 +115,7 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
         text.print(&uno.take_transmitted(), out)?;
     }
     text.print_unfinished_line(out)?;
-    report::print_pins(&edges, arguments.pulses, out)?;
+    report::print_pulses(&edges, arguments.pulses, out)?;
     report::print_summary(&uno, flash_bytes, out)?;
     out.flush()?;
     Ok(match uno.state() {

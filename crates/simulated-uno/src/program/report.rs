@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Edge, Pin, SerialByte, State, Uno, pulses};
 
-/// The longest line that is printed as one, bytes. Longer lines are printed in pieces.
+/// The longest line that is printed without a break, bytes. Longer lines are printed in pieces.
 const MAX_LINE_BYTES: usize = 200;
 
 /// The UNO's serial text, printed line by line.
@@ -12,7 +12,7 @@ const MAX_LINE_BYTES: usize = 200;
 pub struct SerialText {
     /// The bytes of the line that is not complete yet.
     unfinished_line: Vec<u8>,
-    /// The cycle at which the last byte was received.
+    /// The cycle at which the UNO had sent the last byte.
     last_cycle: u64,
 }
 
@@ -55,17 +55,17 @@ impl SerialText {
 /// Escapes control characters, so that a text cannot control the terminal.
 pub fn escape(text: &str) -> String {
     let mut escaped = String::new();
-    for letter in text.chars() {
-        match letter.is_control() {
-            true => escaped.extend(letter.escape_default()),
-            false => escaped.push(letter),
+    for character in text.chars() {
+        match character.is_control() {
+            true => escaped.extend(character.escape_default()),
+            false => escaped.push(character),
         }
     }
     escaped
 }
 
 /// Prints the pulses of all pins that have changed: one line for each pulse if `shows_all`, otherwise one for each pin.
-pub fn print_pins(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
+pub fn print_pulses(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
     let us_of = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
     if edges.is_empty() {
@@ -120,7 +120,7 @@ pub fn print_summary(uno: &Uno, flash_bytes: u32, out: &mut impl Write) -> io::R
         State::Off => "The power is off.".to_owned(),
     };
     let awake_percent = 100.0 * uno.awake_cycles() as f64 / uno.cycle().max(1) as f64;
-    // Intel HEX does not contain the size of the static data, so the room for the stack is unknown.
+    // Intel HEX has no symbols, so the end of the static data, and thus the stack's use, is unknown.
     let memory_text = match uno.image().symbols() {
         [] => String::new(),
         _ => format!(

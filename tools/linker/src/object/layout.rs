@@ -1,4 +1,4 @@
-//! Layout of an object: decides which functions may move, and moves their sections.
+//! Layout of an object: orders its functions so that calls are short, and moves their sections into this order.
 
 use object::build::elf::{Section, SectionId};
 use object::elf;
@@ -13,7 +13,7 @@ const ROUTINES_SIZE: u32 = 320;
 
 impl Object<'_> {
     /// Puts the functions into an order in which calls are short, with the routines of `frames.S` in the
-    /// middle. Sections before the routines are named `.lowtext`, as in the linker's script; the other
+    /// middle. Sections before the routines are named `.lowtext`, as in the linker script; the other
     /// sections follow the routines if the routines are linked first. Does nothing if a section could fall
     /// through into the next section, or branches to another section. Returns the number of bytes saved.
     pub(super) fn order_functions(&mut self) -> i64 {
@@ -23,19 +23,19 @@ impl Object<'_> {
                 return false;
             };
             let stops_at_end = match code.instructions.as_slice() {
-                [.., skip, last] => {
-                    !may_skip_next(skip.first_word) && !falls_through(last.first_word)
+                [.., previous, last] => {
+                    !may_skip_next(previous.first_word) && !falls_through(last.first_word)
                 }
                 [last] => !falls_through(last.first_word),
                 [] => true,
             };
-            // A branch to another section would have a limited reach.
-            let has_long_reach = |reference: &Reference| {
+            // A relative branch to another section might no longer reach it.
+            let survives_move = |reference: &Reference| {
                 let short_reach_kinds = [elf::R_AVR_7_PCREL, elf::R_AVR_13_PCREL];
                 !short_reach_kinds.contains(&reference.kind)
                     || self.0.symbols.get(reference.symbol).section == Some(section.id())
             };
-            stops_at_end && code.references.iter().all(has_long_reach)
+            stops_at_end && code.references.iter().all(survives_move)
         };
         let is_code =
             |section: &&Section| *section.name == *b".text" || section.name.starts_with(b".text.");
@@ -52,8 +52,8 @@ impl Object<'_> {
         let is_call = |reference: &&Reference| reference.kind == elf::R_AVR_CALL;
         for section in &functions {
             // The size is estimated as if all calls in the function were short.
-            let saved_bytes = 2 * self.references(*section).iter().filter(is_call).count() as u64;
-            let size = self.0.sections.get(*section).sh_size - saved_bytes;
+            let call_savings = 2 * self.references(*section).iter().filter(is_call).count() as u64;
+            let size = self.0.sections.get(*section).sh_size - call_savings;
             pieces.sizes.push(size as u32);
         }
         let staying_sections = code_sections().filter(|section| piece_of(section.id()).is_none());
@@ -83,27 +83,27 @@ impl Object<'_> {
         }
         let order = pieces.find_order();
         let compiled_order: Vec<usize> = (0..=other_files_piece).collect();
-        let all_saved_bytes = 2
+        let saved_bytes = 2
             * (pieces.out_of_reach_count(&compiled_order) as i64
                 - pieces.out_of_reach_count(&order) as i64);
-        if all_saved_bytes <= 0 {
+        if saved_bytes <= 0 {
             return 0;
         }
-        let mut is_low = true;
+        let mut is_before_routines = true;
         for piece in order {
             match functions.get(piece) {
-                Some(section) => self.move_to_end(*section, is_low),
-                None => is_low = false,
+                Some(section) => self.move_to_end(*section, is_before_routines),
+                None => is_before_routines = false,
             }
         }
-        all_saved_bytes
+        saved_bytes
     }
 
     /// Moves a section of code and its table of relocations to the end of the file. Both must move, because the linker
     /// places a section where the first of the two is.
-    fn move_to_end(&mut self, section: SectionId, is_low: bool) {
+    fn move_to_end(&mut self, section: SectionId, is_before_routines: bool) {
         let new_section = self.0.sections.copy(section);
-        if let (true, Some(name)) = (is_low, new_section.name.strip_prefix(b".text")) {
+        if let (true, Some(name)) = (is_before_routines, new_section.name.strip_prefix(b".text")) {
             new_section.name = [b".lowtext", name].concat().into();
         }
         let new_section = new_section.id();

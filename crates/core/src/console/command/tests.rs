@@ -13,7 +13,6 @@ fn parse_line(line: &str) -> Result<Command, LineError> {
     parse(line.as_bytes(), &Sample::asymmetric())
 }
 
-/// Returns the command that starts a gait without a number of cycles.
 /// Checks that each of the lines between the bars is refused for this reason.
 #[track_caller]
 fn assert_each_refused(lines: &str, line_error: LineError) {
@@ -22,6 +21,7 @@ fn assert_each_refused(lines: &str, line_error: LineError) {
     }
 }
 
+/// Returns the command that starts a gait without a number of cycles.
 fn command_of_gait(gait: GaitId) -> Command {
     Command::Order(Order::Gait(gait, 0))
 }
@@ -142,7 +142,7 @@ fn every_setting_is_read_with_its_servo() {
 }
 
 #[test]
-fn a_missing_malformed_or_surplus_argument_is_answered_by_the_usage() {
+fn a_missing_malformed_or_surplus_argument_is_answered_with_the_usage() {
     for (usage, lines) in [
         (
             Text::TrimUsage,
@@ -175,7 +175,7 @@ fn a_missing_malformed_or_surplus_argument_is_answered_by_the_usage() {
 }
 
 #[test]
-fn a_setting_out_of_range_is_answered_by_the_range() {
+fn a_setting_out_of_range_is_answered_with_the_range() {
     for (range, lines) in [
         (
             Text::TrimRange,
@@ -331,7 +331,7 @@ fn with_shared_robot<T>(call: impl FnOnce(&Sample) -> T) -> T {
 }
 
 #[test]
-fn numbers_around_sixteen_bits_saturate_instead_of_wrapping() {
+fn numbers_beyond_sixteen_bits_saturate_instead_of_wrapping() {
     for (digits, value) in [
         ("65519", 65_519),
         ("65529", 65_529),

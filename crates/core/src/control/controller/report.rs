@@ -31,7 +31,7 @@ impl Controller {
         self.saved_state
     }
 
-    /// The input whose contact may end the latest step of a routine.
+    /// The input whose contact may end the current step of a routine.
     pub const fn awaited_input(&self) -> Input {
         self.contact.input
     }

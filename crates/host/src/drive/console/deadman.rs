@@ -34,27 +34,27 @@ pub(super) struct Deadman {
     /// The robot's own setting, ms, once it is read.
     own_ms: Option<u16>,
     /// True while `deadman` has its value for driving, or is about to get it.
-    pub(super) is_set: bool,
+    pub(super) is_overridden: bool,
 }
 
 impl Deadman {
-    /// Returns the lines to send before and after a line of the user.
+    /// Returns the lines to send before and after a line that the user entered.
     pub(super) fn lines_around(
         &mut self,
         line: &str,
     ) -> (&'static [DeadmanLine], &'static [DeadmanLine]) {
         let line = line.to_ascii_lowercase();
         let word = line.split_whitespace().next().unwrap_or_default();
-        if matches!(word, "cal" | "save") && self.is_set {
-            // `cal` shows and `save` keeps the robot's own setting, so it is restored for that line. It is set again
-            // afterwards, because the robot may have started to walk since its last status.
+        if matches!(word, "cal" | "save") && self.is_overridden {
+            // `cal` shows the setting and `save` stores it, so the robot's own value is restored for that line. The
+            // driving value is set again afterwards, because the robot may have started to walk since its last status.
             return (&[DeadmanLine::RestoreForOneLine], &[DeadmanLine::Set]);
         }
         // Only a gait or a routine makes the robot walk; their names are not among the console's words.
-        if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_set {
+        if word == "stand" || Word::find(word.as_bytes()).is_some() || self.is_overridden {
             return (&[], &[]);
         }
-        self.is_set = true;
+        self.is_overridden = true;
         match self.own_ms {
             None => (&[DeadmanLine::Read, DeadmanLine::Set], &[]),
             Some(_) => (&[DeadmanLine::Set], &[]),
@@ -70,7 +70,7 @@ impl Deadman {
             DeadmanLine::Set => own_ms.min(DRIVING_DEADMAN_MS),
             DeadmanLine::RestoreForOneLine => own_ms,
             DeadmanLine::Restore => {
-                self.is_set = false;
+                self.is_overridden = false;
                 own_ms
             }
         };
@@ -90,7 +90,7 @@ impl Deadman {
             .any(|start| line.starts_with(start))
     }
 
-    /// Updates the robot's own setting after the robot has accepted a line of the user.
+    /// Updates the remembered setting of the robot after it has accepted a line that the user sent.
     pub(super) fn note_accepted_line(&mut self, line: &str) {
         let line = line.to_ascii_lowercase();
         match line.split_whitespace().collect::<Vec<_>>()[..] {

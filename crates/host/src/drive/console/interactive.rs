@@ -62,7 +62,7 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
     let (board, banner) = finder.open_and_greet()?;
     let mut clock = Clock::start();
     let mut dialogue = Dialogue {
-        session: Session::new(clock.now(), true, file.is_some()).with_driver(),
+        session: Session::new(clock.now(), true, file.is_some()).driven_by_person(),
         clock,
         recorder: None,
         status_line_prefix: "",
@@ -120,7 +120,7 @@ impl Dialogue {
                 show(&line)?;
             }
         }
-        let overdue_message = self.session.end_overdue_question(self.clock.now());
+        let overdue_message = self.session.time_out_request(self.clock.now());
         for event in self.session.take_events() {
             self.record(event)?;
         }
@@ -289,7 +289,7 @@ impl Dialogue {
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is back: {banner}", board.name))?;
                 let is_recorded = self.recorder.is_some();
-                self.session = Session::new(self.clock.now(), true, is_recorded).with_driver();
+                self.session = Session::new(self.clock.now(), true, is_recorded).driven_by_person();
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),

@@ -1,8 +1,8 @@
 //! The dialogue with the robot: the next line to send, the lines to show, and the events to
 //! record.
 //!
-//! The robot answers each line once and in order, and prints other lines in between. For its
-//! status line the console sends `status` twice a second, and more often while a person drives;
+//! The robot answers each line once and in order, and prints other lines in between. For the
+//! screen's status line, the console sends `status` twice a second, and more often while a person drives;
 //! these answers are not shown, and a user's line waits for at most one of them. `stop` waits for
 //! none: it is sent at once, and repeated until the robot answers it, since a link may lose a line
 //! or its answer. The caller of a script has to know if a line was refused, so failed lines are
@@ -34,8 +34,8 @@ const SILENCE_TIMEOUT: Duration = Duration::from_millis(800);
 
 /// A line that waits for its answer.
 #[derive(Debug)]
-enum Question {
-    /// A line of the user.
+enum Request {
+    /// A line that the user entered.
     Line(String),
     /// A `status` that this program sends by itself.
     Status,
@@ -48,13 +48,13 @@ enum Question {
 /// A line that waits to be sent.
 #[derive(Debug)]
 enum QueuedLine {
-    /// A line of the user.
+    /// A line that the user entered.
     Line(String),
     /// A line about `deadman` that this program sends by itself.
     Deadman(deadman::DeadmanLine),
 }
 
-impl Question {
+impl Request {
     fn timeout(&self) -> Duration {
         match self {
             Self::Status => STATUS_TIMEOUT,
@@ -62,7 +62,7 @@ impl Question {
         }
     }
 
-    /// True if an answer can belong to the question: after `ok`, it has to begin with the question's word.
+    /// True if an answer can belong to the request: after `ok`, it has to begin with the request's word.
     fn is_answered_by(&self, answer: &str) -> bool {
         let line = match self {
             Self::Line(line) | Self::Deadman(line) => line.to_ascii_lowercase(),
@@ -95,8 +95,8 @@ struct UnansweredStop {
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
 pub struct Session {
-    /// The question that waits for its answer, and the time at which it was sent.
-    pending_question: Option<(Question, Instant)>,
+    /// The request that waits for its answer, and the time at which it was sent.
+    pending_request: Option<(Request, Instant)>,
     /// The `stop` that is being repeated until the robot answers it.
     unanswered_stop: Option<UnansweredStop>,
     /// True from a missing answer until the next answer, so that the user is told only once.
@@ -120,7 +120,7 @@ pub struct Session {
     /// The events since they were last taken.
     events: Vec<Event>,
     /// Number of the user's lines that were sent or have failed, each `stop` included.
-    sent_count: usize,
+    user_line_count: usize,
     /// Number of the user's lines that were refused, not answered or not sent.
     failed_count: usize,
     /// The first line that failed, and the reason.
@@ -132,7 +132,7 @@ impl Session {
     /// every pose.
     pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
-            pending_question: None,
+            pending_request: None,
             unanswered_stop: None,
             is_silent: false,
             late_answers_until: now,
@@ -144,7 +144,7 @@ impl Session {
             is_watch_due: watches_poses,
             status: None,
             events: Vec::new(),
-            sent_count: 0,
+            user_line_count: 0,
             failed_count: 0,
             first_failure: None,
         }
@@ -153,12 +153,12 @@ impl Session {
     /// Marks the dialogue as one with a person. The robot could walk out of range, so `deadman`
     /// is set while it walks.
     #[must_use]
-    pub fn with_driver(mut self) -> Self {
+    pub fn driven_by_person(mut self) -> Self {
         self.deadman = Some(Deadman::default());
         self
     }
 
-    /// Queues a line of the user.
+    /// Queues a line that the user entered.
     pub fn queue(&mut self, line: &str) {
         if line.split_whitespace().next() == Some("watch") {
             self.watches_poses = false;
@@ -177,7 +177,10 @@ impl Session {
     /// Returns the line that restores the robot's own `deadman` before the program ends, so that
     /// the robot continues its gait; `None` if `deadman` is not set.
     pub fn restore_deadman(&mut self) -> Option<String> {
-        let deadman = self.deadman.as_mut().filter(|deadman| deadman.is_set)?;
+        let deadman = self
+            .deadman
+            .as_mut()
+            .filter(|deadman| deadman.is_overridden)?;
         Some(deadman.console_line(deadman::DeadmanLine::Restore))
     }
 
@@ -188,13 +191,15 @@ impl Session {
 
     /// True while `deadman` is set because the robot walks, or is about to.
     pub fn is_driven(&self) -> bool {
-        self.deadman.as_ref().is_some_and(|deadman| deadman.is_set)
+        self.deadman
+            .as_ref()
+            .is_some_and(|deadman| deadman.is_overridden)
     }
 
     /// Stops the robot. Queued lines are dropped, since they could start it again.
     pub fn stop(&mut self, now: Instant) {
         self.queue.clear();
-        self.sent_count += 1;
+        self.user_line_count += 1;
         self.events.push(Event::Sent("stop".to_owned()));
         self.unanswered_stop.get_or_insert(UnansweredStop {
             requested_at: now,
@@ -215,14 +220,14 @@ impl Session {
             self.late_answers_until = now + LATE_ANSWER_TIME;
             return Some("stop".to_owned());
         }
-        if self.pending_question.is_some() || now < self.late_answers_until {
+        if self.pending_request.is_some() || now < self.late_answers_until {
             return None;
         }
-        let (question, line) = if self.is_watch_due {
+        let (request, line) = if self.is_watch_due {
             self.is_watch_due = false;
-            (Question::Watch, "watch 1".to_owned())
-        } else if let Some((question, line)) = self.pop_queued_line() {
-            (question, line)
+            (Request::Watch, "watch 1".to_owned())
+        } else if let Some((request, line)) = self.pop_queued_line() {
+            (request, line)
         } else if self.polls_status && now >= self.next_status_time {
             let interval = if self.is_driven() {
                 deadman::LINE_INTERVAL
@@ -230,26 +235,26 @@ impl Session {
                 STATUS_INTERVAL
             };
             self.next_status_time = now + interval;
-            (Question::Status, "status".to_owned())
+            (Request::Status, "status".to_owned())
         } else {
             return None;
         };
-        self.pending_question = Some((question, now));
+        self.pending_request = Some((request, now));
         Some(line)
     }
 
-    fn pop_queued_line(&mut self) -> Option<(Question, String)> {
+    fn pop_queued_line(&mut self) -> Option<(Request, String)> {
         while let Some(queued) = self.queue.pop_front() {
             match queued {
                 QueuedLine::Line(line) => {
-                    self.sent_count += 1;
+                    self.user_line_count += 1;
                     self.events.push(Event::Sent(line.clone()));
-                    return Some((Question::Line(line.clone()), line));
+                    return Some((Request::Line(line.clone()), line));
                 }
                 QueuedLine::Deadman(deadman_line) => {
                     if let Some(deadman) = &mut self.deadman {
                         let line = deadman.console_line(deadman_line);
-                        return Some((Question::Deadman(line.clone()), line));
+                        return Some((Request::Deadman(line.clone()), line));
                     }
                 }
             }
@@ -262,12 +267,12 @@ impl Session {
     fn drop_queued_lines(&mut self) -> Option<String> {
         for queued in std::mem::take(&mut self.queue) {
             if let QueuedLine::Line(line) = queued {
-                self.sent_count += 1;
+                self.user_line_count += 1;
                 self.record_failure(line, "not sent");
             }
         }
         if let Some(deadman) = &mut self.deadman {
-            deadman.is_set = false;
+            deadman.is_overridden = false;
         }
         let message = "(not sent: the robot has not confirmed that it stops when it hears nothing)";
         Some(message.to_owned())
@@ -277,7 +282,7 @@ impl Session {
     fn end_driving(&mut self) {
         let is_walking = self.status.as_ref().is_some_and(Status::is_moving);
         if let Some(deadman) = &self.deadman
-            && deadman.is_set
+            && deadman.is_overridden
             && !is_walking
             && self.queue.is_empty()
         {
@@ -296,8 +301,8 @@ impl Session {
                 .then_some(visible_line)
                 .flatten();
         }
-        if let (Some((Question::Deadman(_), _)), Some(deadman)) =
-            (&self.pending_question, &mut self.deadman)
+        if let (Some((Request::Deadman(_), _)), Some(deadman)) =
+            (&self.pending_request, &mut self.deadman)
             && deadman.read_cal_line(line)
         {
             return None;
@@ -305,8 +310,8 @@ impl Session {
         if line.starts_with('#') {
             self.events.push(Event::from_note(line));
             if line.starts_with(BANNER_START) {
-                // The board was reset, so it will not answer the question.
-                self.pending_question = None;
+                // The board was reset, so it will not answer the request.
+                self.pending_request = None;
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
             }
@@ -316,25 +321,25 @@ impl Session {
         let status = Status::parse(line);
         self.status = status.clone().or(self.status.take());
         match self
-            .pending_question
-            .take_if(|(question, _)| question.is_answered_by(line))
+            .pending_request
+            .take_if(|(request, _)| request.is_answered_by(line))
         {
-            Some((Question::Status, _)) if status.is_some() => {
+            Some((Request::Status, _)) if status.is_some() => {
                 self.events.push(Event::Status(line.to_owned()));
                 self.end_driving();
                 return None;
             }
-            Some((Question::Deadman(_), _)) => {
+            Some((Request::Deadman(_), _)) => {
                 if line.starts_with("err ") {
                     return self.drop_queued_lines();
                 }
                 return None;
             }
-            Some((Question::Watch, _)) => return None,
-            Some((Question::Line(sent_line), _)) if line.starts_with("err ") => {
+            Some((Request::Watch, _)) => return None,
+            Some((Request::Line(sent_line), _)) if line.starts_with("err ") => {
                 self.record_failure(sent_line, line)
             }
-            Some((Question::Line(sent_line), _)) => {
+            Some((Request::Line(sent_line), _)) => {
                 if let Some(deadman) = &mut self.deadman {
                     deadman.note_accepted_line(&sent_line);
                 }
@@ -347,7 +352,7 @@ impl Session {
 
     /// True if a `stop` that was sent as a normal line, such as one of a script, waits for its answer.
     fn is_stop_pending(&self) -> bool {
-        matches!(&self.pending_question, Some((Question::Line(line), _)) if line == "stop")
+        matches!(&self.pending_request, Some((Request::Line(line), _)) if line == "stop")
     }
 
     /// Handles an answer to `stop`; returns false if no `stop` is unanswered.
@@ -359,15 +364,15 @@ impl Session {
             self.late_answers_until = stop.requested_at;
         }
         // Answers come in order, so the answer to the line before `stop` has been lost.
-        if let Some((Question::Line(sent_line), _)) = self.pending_question.take() {
+        if let Some((Request::Line(sent_line), _)) = self.pending_request.take() {
             self.record_failure(sent_line, "no answer");
         }
         self.events.push(Event::Answer(line.to_owned()));
         true
     }
 
-    /// Ends an overdue question; returns the message to the user, if any.
-    pub fn end_overdue_question(&mut self, now: Instant) -> Option<String> {
+    /// Ends an overdue request; returns the message to the user, if any.
+    pub fn time_out_request(&mut self, now: Instant) -> Option<String> {
         let elapsed_since = |start: Instant| now.saturating_duration_since(start);
         if let Some(stop) = &mut self.unanswered_stop
             && !stop.is_reported
@@ -376,19 +381,18 @@ impl Session {
             stop.is_reported = true;
             return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
         }
-        let is_overdue = |(question, start): &mut (Question, Instant)| {
-            elapsed_since(*start) >= question.timeout()
-        };
-        let (question, _) = self.pending_question.take_if(is_overdue)?;
-        Some(match question {
-            Question::Line(line) => {
+        let is_overdue =
+            |(request, start): &mut (Request, Instant)| elapsed_since(*start) >= request.timeout();
+        let (request, _) = self.pending_request.take_if(is_overdue)?;
+        Some(match request {
+            Request::Line(line) => {
                 let message = format!("(no answer to `{line}`)");
                 self.record_failure(line, "no answer");
                 message
             }
-            Question::Deadman(_) => return self.drop_queued_lines(),
-            Question::Status | Question::Watch if self.is_silent => return None,
-            Question::Status | Question::Watch => {
+            Request::Deadman(_) => return self.drop_queued_lines(),
+            Request::Status | Request::Watch if self.is_silent => return None,
+            Request::Status | Request::Watch => {
                 self.is_silent = true;
                 "(the robot does not answer)".to_owned()
             }
@@ -410,13 +414,13 @@ impl Session {
         };
         Err(Failure::Impossible(format!(
             "the robot did not accept {} of {} lines, the first `{line}`: {reason}",
-            self.failed_count, self.sent_count
+            self.failed_count, self.user_line_count
         )))
     }
 
     /// True if no answer is outstanding and no line is queued.
     pub fn is_idle(&self) -> bool {
-        self.pending_question.is_none() && self.unanswered_stop.is_none() && self.queue.is_empty()
+        self.pending_request.is_none() && self.unanswered_stop.is_none() && self.queue.is_empty()
     }
 
     /// The latest status.

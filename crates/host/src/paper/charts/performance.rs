@@ -13,7 +13,7 @@ const PAGE_SIZE: (f64, f64) = (1530.0, 570.0);
 /// Width and height of each panel, px.
 const PANEL_SIZE: f64 = 340.0;
 
-/// Draws workspace area, radius of the inscribed circle, and mean conditioning index over r1 and r2.
+/// Draws workspace area, radius of the maximum inscribed circle, and mean conditioning index over r1 and r2.
 pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
     let cell_of = |r1: f64, r2: f64| ((r1 / step).round() as i64, (r2 / step).round() as i64);
     let cells: HashMap<_, _> = points

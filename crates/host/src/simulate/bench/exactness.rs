@@ -12,7 +12,7 @@ use crate::simulate::sim::frame::{FRAME_CYCLES, first_cycle, group_frames};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exactness {
     /// Smallest and largest value of a measured width minus its command, cycles; `None` if the commands are not known,
-    /// because the firmware was built from another source.
+    /// because the firmware was built from different source code.
     pub width_error_range: Option<[i64; 2]>,
     /// Largest deviation of a servo's pulse period from 20 ms, cycles.
     pub max_period_error: u64,

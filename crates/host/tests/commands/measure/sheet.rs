@@ -44,13 +44,13 @@ fn write_sheet(paper: &str) -> (String, [f64; 2]) {
 fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
     let columns = (page_width * PIXELS_PER_MM) as usize;
     let rows = (page_height * PIXELS_PER_MM) as usize;
-    let mut grey = vec![255; columns * rows];
+    let mut pixels = vec![255; columns * rows];
     let mut ink_extent = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     let mut lines = text.lines().peekable();
     let mut fill = 0;
     while let Some(line) = lines.next() {
-        if let Some(grey) = operands(line, " g").next() {
-            fill = (255.0 * grey[0]) as u8;
+        if let Some(operands) = operands(line, " g").next() {
+            fill = (255.0 * operands[0]) as u8;
         }
         let Some(rectangle) = operands(line, " re").next() else {
             continue;
@@ -69,24 +69,24 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64
         };
         for row in pixel_range(page_height - y - height, page_height - y) {
             for column in pixel_range(x, x + width) {
-                grey[row * columns + column] = fill;
+                pixels[row * columns + column] = fill;
             }
         }
     }
-    let picture = Picture::new(columns, rows, grey).expect("the page has pixels");
+    let picture = Picture::new(columns, rows, pixels).expect("the page has pixels");
     (picture, ink_extent)
 }
 
 #[test]
 fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
-    for (paper, size_mm) in [("a4", [297.0_f64, 210.0]), ("letter", [279.4, 215.9])] {
+    for (paper, paper_mm) in [("a4", [297.0_f64, 210.0]), ("letter", [279.4, 215.9])] {
         let (text, page_mm) = write_sheet(paper);
         let (picture, ink_extent) = rasterize(&text, page_mm);
         for (axis, [low, high]) in ink_extent.into_iter().enumerate() {
-            assert!((page_mm[axis] - size_mm[axis]).abs() < 0.1, "{page_mm:?}");
+            assert!((page_mm[axis] - paper_mm[axis]).abs() < 0.1, "{page_mm:?}");
             assert!(
                 low > 5.0 && high < page_mm[axis] - 5.0,
-                "outside the margins of a printer: {ink_extent:?}"
+                "ink outside the printable area: {ink_extent:?}"
             );
         }
         let mut tags = read_tags(&picture);
@@ -115,13 +115,13 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
 fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
     let (text, _) = write_sheet("a4");
     let rectangles =
-        operands(&text, " re").map(|line| [0, 1, 2, 3].map(|i| line[i] * MM_PER_POINT));
-    let lines = rectangles
+        operands(&text, " re").map(|rectangle| [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT));
+    let rulers = rectangles
         .clone()
-        .filter(|line| (line[2] - sheet::RULER_LENGTH).abs() < 0.01);
-    assert_eq!(lines.count(), sheet::STRIP_COUNT);
-    // The outer edges of the two end ticks are at the ends of the line.
-    let ticks = rectangles.filter(|line| (line[3] - 8.0).abs() < 0.01);
+        .filter(|rectangle| (rectangle[2] - sheet::RULER_LENGTH).abs() < 0.01);
+    assert_eq!(rulers.count(), sheet::STRIP_COUNT);
+    // The outer edges of the two end ticks, 8 mm high, are at the ends of the line.
+    let ticks = rectangles.filter(|rectangle| (rectangle[3] - 8.0).abs() < 0.01);
     let ticks: Vec<[f64; 2]> = ticks.map(|[x, _, width, _]| [x, x + width]).collect();
     assert_eq!(ticks.len(), 2 * sheet::STRIP_COUNT);
     let distance = ticks[1][1] - ticks[0][0];

@@ -148,11 +148,11 @@ fn a_gait_name_may_begin_with_a_console_word_unless_it_is_reserved() {
 
 #[test]
 fn a_name_may_have_48_characters_but_not_49() {
-    let gaits_of_name_length =
+    let gaits_with_name_length =
         |length: usize| format!("{STAND}{}", WALK.replace("walk", &"w".repeat(length)));
-    let robot = paper_with_gaits(&gaits_of_name_length(48)).expect("48 characters are allowed");
+    let robot = paper_with_gaits(&gaits_with_name_length(48)).expect("48 characters are allowed");
     assert_eq!(robot.gaits()[1].name().len(), 48);
-    let message = paper_with_gaits(&gaits_of_name_length(49))
+    let message = paper_with_gaits(&gaits_with_name_length(49))
         .expect_err("49 characters are too many")
         .to_string();
     assert!(

@@ -6,9 +6,9 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// An order to a robot; a pose is given as the four sweeps, a speed in percent.
+/// An order to a robot; a pose is given as four sweeps in 1/65536 turn, a speed in percent.
 #[derive(Clone, Copy, Debug)]
-enum Order {
+enum TestOrder {
     Gait(&'static str),
     Pose([i16; 4]),
     Stop,
@@ -17,14 +17,14 @@ enum Order {
 }
 
 /// Yields random orders, each with the number of frames until the next order.
-fn any_orders() -> impl Strategy<Value = Vec<(Order, u32)>> {
+fn any_orders() -> impl Strategy<Value = Vec<(TestOrder, u32)>> {
     let any_order = prop_oneof![
-        5 => prop::sample::select(GAIT_NAMES.to_vec()).prop_map(Order::Gait),
-        3 => prop::array::uniform4(-3000i16..3000).prop_map(Order::Pose),
-        1 => prop::array::uniform4(-7000i16..7000).prop_map(Order::Pose),
-        1 => Just(Order::Stop),
-        1 => Just(Order::Rest),
-        2 => (10u8..=100).prop_map(Order::Speed),
+        5 => prop::sample::select(GAIT_NAMES.to_vec()).prop_map(TestOrder::Gait),
+        3 => prop::array::uniform4(-3000i16..3000).prop_map(TestOrder::Pose),
+        1 => prop::array::uniform4(-7000i16..7000).prop_map(TestOrder::Pose),
+        1 => Just(TestOrder::Stop),
+        1 => Just(TestOrder::Rest),
+        2 => (10u8..=100).prop_map(TestOrder::Speed),
     ];
     prop::collection::vec((any_order, 0u32..90), 1..12)
 }
@@ -40,17 +40,17 @@ proptest! {
         let mut motion = Motion::awake(robot);
         for (order, frames) in orders {
             match order {
-                Order::Gait(name) => motion.start(name),
-                Order::Pose(sweeps) => {
+                TestOrder::Gait(name) => motion.start(name),
+                TestOrder::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
                     let travel_hazard = pose.first_servo_beyond_travel(motion.calibration()).map(Hazard::Travel);
                     let hazard = Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot);
                     let hazard = travel_hazard.or(hazard);
                     prop_assert_eq!(motion.go_to(&pose).err(), hazard);
                 }
-                Order::Stop => motion.stop(),
-                Order::Rest => motion.rest(),
-                Order::Speed(percent) => motion.set_speed(percent),
+                TestOrder::Stop => motion.stop(),
+                TestOrder::Rest => motion.rest(),
+                TestOrder::Speed(percent) => motion.set_speed(percent),
             }
             for _ in 0..frames {
                 let (pose_before, was_cycling) = (*motion.pose(), motion.is_cycling());
@@ -61,8 +61,8 @@ proptest! {
                     prop_assert!(actual == PulseWidth(0) || actual == held_width);
                 }
                 if !was_cycling {
-                    let distance = pose_before.largest_turn_to(motion.pose());
-                    prop_assert!(distance <= motion.robot.slew().per_frame, "{}", distance);
+                    let largest_turn = pose_before.largest_turn_to(motion.pose());
+                    prop_assert!(largest_turn <= motion.robot.slew().per_frame, "{}", largest_turn);
                 }
             }
         }

@@ -85,13 +85,13 @@ fn a_missing_answer_is_reported_once_and_the_next_line_is_sent() {
     session.queue("walk");
     session.queue("stop");
     session.next_line(now);
-    assert_eq!(session.end_overdue_question(now), None);
+    assert_eq!(session.time_out_request(now), None);
     let later = now + ANSWER_TIMEOUT;
     assert_eq!(
-        session.end_overdue_question(later).as_deref(),
+        session.time_out_request(later).as_deref(),
         Some("(no answer to `walk`)")
     );
-    assert_eq!(session.end_overdue_question(later), None);
+    assert_eq!(session.time_out_request(later), None);
     assert_eq!(session.next_line(later).as_deref(), Some("stop"));
 }
 
@@ -128,10 +128,10 @@ fn stop_is_sent_until_it_is_answered_and_its_later_answers_are_ignored() {
         time += STOP_INTERVAL;
     }
     let message = session
-        .end_overdue_question(time)
+        .time_out_request(time)
         .expect("the user gets a message");
     assert!(message.contains("may go on"), "{message}");
-    assert_eq!(session.end_overdue_question(time), None, "only once");
+    assert_eq!(session.time_out_request(time), None, "only once");
     assert_eq!(session.receive("ok stop").as_deref(), Some("ok stop"));
     session.queue("walk");
     assert_eq!(
@@ -184,7 +184,7 @@ fn a_late_answer_is_not_mistaken_for_that_of_the_next_line() {
     session.queue("trim 1 2");
     session.queue("walk");
     session.next_line(now);
-    session.end_overdue_question(now + ANSWER_TIMEOUT);
+    session.time_out_request(now + ANSWER_TIMEOUT);
     session.next_line(now + ANSWER_TIMEOUT);
     session.receive("ok trim 1 2.00");
     assert!(!session.is_idle(), "walk has no answer");
@@ -224,7 +224,7 @@ fn lines_that_fail_are_counted_once_and_the_first_is_named() {
         session.next_line(now);
         match answer {
             Some(answer) => drop(session.receive(answer)),
-            None => drop(session.end_overdue_question(now + ANSWER_TIMEOUT)),
+            None => drop(session.time_out_request(now + ANSWER_TIMEOUT)),
         }
         session
             .check_all_accepted()
@@ -280,7 +280,7 @@ fn lines_except_status(lines: &[(u64, String)]) -> Vec<&str> {
 #[test]
 fn while_a_user_drives_deadman_is_set_and_lines_keep_the_robot_walking() {
     let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_driver();
+    let mut session = Session::new(now, true, false).driven_by_person();
     session.queue("walk");
     let lines = run_session(&mut session, now, 5000, answer_of_robot);
     assert_eq!(lines_except_status(&lines), ["cal", "deadman 700", "walk"]);
@@ -291,7 +291,7 @@ fn while_a_user_drives_deadman_is_set_and_lines_keep_the_robot_walking() {
 #[test]
 fn deadman_is_restored_before_cal_and_set_again_afterwards() {
     let now = Instant::now();
-    let mut session = Session::new(now, false, false).with_driver();
+    let mut session = Session::new(now, false, false).driven_by_person();
     for line in ["walk", "cal"] {
         session.queue(line);
     }
@@ -310,7 +310,7 @@ fn deadman_is_restored_before_cal_and_set_again_afterwards() {
 #[test]
 fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
     let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_driver();
+    let mut session = Session::new(now, true, false).driven_by_person();
     let answer_with_own_deadman = |line: &str| answer_of_robot(line).replace("700", "2000");
     session.queue("walk");
     let lines = run_session(&mut session, now, 1000, answer_with_own_deadman);
@@ -342,7 +342,7 @@ fn a_robot_that_has_stopped_gets_its_own_deadman_restored() {
 #[test]
 fn a_deadman_that_an_earlier_run_left_set_is_restored_as_zero() {
     let now = Instant::now();
-    let mut session = Session::new(now, true, false).with_driver();
+    let mut session = Session::new(now, true, false).driven_by_person();
     session.queue("arc left");
     let answer_with_driving_deadman = |line: &str| answer_of_robot(line).replace("700", "901");
     run_session(&mut session, now, 1000, answer_with_driving_deadman);
@@ -363,7 +363,7 @@ fn a_script_sets_no_deadman() {
 #[test]
 fn no_gait_starts_before_the_robot_has_confirmed_its_deadman() {
     let now = Instant::now();
-    let mut session = Session::new(now, false, false).with_driver();
+    let mut session = Session::new(now, false, false).driven_by_person();
     session.queue("walk");
     assert_eq!(session.next_line(now).as_deref(), Some("cal"));
     session.receive("# deadman 0");
@@ -371,7 +371,7 @@ fn no_gait_starts_before_the_robot_has_confirmed_its_deadman() {
     assert_eq!(session.next_line(now).as_deref(), Some("deadman 901"));
     let later = now + ANSWER_TIMEOUT;
     let message = session
-        .end_overdue_question(later)
+        .time_out_request(later)
         .expect("the user gets a message");
     assert!(message.contains("not sent"), "{message}");
     assert_eq!(session.next_line(later), None, "walk is not sent");
@@ -394,7 +394,7 @@ fn a_silent_robot_is_reported_once_until_it_answers_again() {
             session.receive(WALKING_STATUS);
         }
         now += STATUS_TIMEOUT;
-        session.end_overdue_question(now)
+        session.time_out_request(now)
     };
     assert!(ask(false).is_some_and(|message| message.contains("does not answer")));
     assert_eq!(ask(false), None);
