@@ -104,6 +104,8 @@ export class Session {
   private resolveBanner: () => void = () => {};
   /** True if a board without this firmware has the boot loader of a UNO. */
   hasBootLoader = false;
+  /** The pace of the last line that asks for one, percent; null once it is answered. */
+  private requestedPace: number | null = null;
   /** True once the board has been told to report its poses. */
   private isWatching = false;
   /** Number of calls of `loadFile` so far: a file that arrives after a later call is dropped. */
@@ -136,9 +138,9 @@ export class Session {
     return this.state.gait.value;
   }
 
-  /** The robot's pace, percent. */
+  /** The pace that was asked for, until the robot has answered, else the robot's pace; percent. */
   get pace(): number {
-    return this.state.pace.value;
+    return this.requestedPace ?? this.state.pace.value;
   }
 
   /** The board's firmware and robot; undefined until known. */
@@ -470,7 +472,7 @@ export class Session {
 
   private setPace(percent: number): void {
     // A cycle in which the pace changes cannot be measured.
-    if (percent !== this.pace) this.walkedPath.clear();
+    if (percent !== this.state.pace.value) this.walkedPath.clear();
     this.state.pace.value = percent;
   }
 
@@ -519,7 +521,11 @@ export class Session {
 
   /** Sends a line that drives the robot. Its refusal is shown beside the gaits' buttons until a line is accepted. */
   async drive(line: string): Promise<void> {
+    const requestedPace = line.startsWith(`${WORDS.speed} `) ? Number(line.slice(WORDS.speed.length)) : null;
+    this.requestedPace = requestedPace ?? this.requestedPace;
     const answer = await this.ask(line);
+    // A later line may ask for another pace.
+    if (this.requestedPace === requestedPace) this.requestedPace = null;
     if (answer) this.state.refusal.value = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
@@ -642,7 +648,7 @@ export class Session {
   /** Returns the displacement in the last complete cycle; null without a gait that moves or a complete cycle. */
   measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.pace) : null;
+    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.state.pace.value) : null;
   }
 
   /** The predictions that come with the page; null unless the robot, its floor and its servos are those of the file. */

@@ -38,7 +38,7 @@ impl Banner {
         let (line, _) = line.strip_prefix("# lizard ")?.split_once(',')?;
         let words: Vec<&str> = line.split(' ').collect();
         let robot = match words[1..] {
-            ["robot", name, hash] => Some(RobotIdentity {
+            ["robot", name, hash] if !name.is_empty() && is_hash(hash) => Some(RobotIdentity {
                 name: name.to_owned(),
                 hash: hash.to_owned(),
             }),
@@ -50,6 +50,11 @@ impl Banner {
             robot,
         })
     }
+}
+
+/// True for eight lower-case hexadecimal digits.
+fn is_hash(text: &str) -> bool {
+    text.len() == 8 && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
 }
 
 #[cfg(test)]
@@ -81,6 +86,9 @@ mod tests {
             "# lizard 0.1.0, send help for the commands",
             "# lizard 0.2.0 robot paper 1a2b",
             "# lizard 0.2.0 robot paper, send help for the commands",
+            "# lizard 0.2.0 robot paper 1a2b, send help for the commands",
+            "# lizard 0.2.0 robot paper 1A2B3C4X, send help for the commands",
+            "# lizard 0.2.0 robot  1a2b3c4d, send help for the commands",
         ] {
             assert_eq!(Banner::parse(line), None, "{line}");
         }

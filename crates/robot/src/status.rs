@@ -121,7 +121,11 @@ pub fn parse_pose_report(line: &str) -> Option<(u64, [f64; 4])> {
 /// Parses four angles, separated by commas; `None` for any other text.
 fn parse_angles(text: &str) -> Option<[f64; 4]> {
     let angles: Option<Vec<f64>> = text.split(',').map(|angle| angle.parse().ok()).collect();
-    angles?.try_into().ok()
+    let angles: [f64; 4] = angles?.try_into().ok()?;
+    angles
+        .iter()
+        .all(|angle| angle.is_finite())
+        .then_some(angles)
 }
 
 #[cfg(test)]
@@ -173,7 +177,12 @@ mod tests {
     fn a_reported_pose_has_four_angles() {
         let report = parse_pose_report("# t=7 pose=1.00,2.00,3.00,4.50");
         assert_eq!(report, Some((7, [1.0, 2.0, 3.0, 4.5])));
-        for line in ["# t=7 pose=1,2,3", "# t= pose=1,2,3,4", "t=7 pose=1,2,3,4"] {
+        for line in [
+            "# t=7 pose=1,2,3",
+            "# t=7 pose=1,2,3,nan",
+            "# t= pose=1,2,3,4",
+            "t=7 pose=1,2,3,4",
+        ] {
             assert_eq!(parse_pose_report(line), None, "{line}");
         }
     }

@@ -53,10 +53,11 @@ fn run_blocked_frames(
         }
     }
     run.run_to(start + intervals.len() as u64 * FRAME_CYCLES - SLOT_CYCLES / 2);
-    let frames = intervals.iter().zip(run.frames_since(start));
+    let frames = run.frames_since(start);
+    assert_eq!(frames.len(), intervals.len(), "each interval has its frame");
     let with_interval =
         |(interval, (frame, expected)): (&BlockedInterval, _)| (*interval, frame, expected);
-    frames.map(with_interval).collect()
+    intervals.iter().zip(frames).map(with_interval).collect()
 }
 
 /// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. The starts of the intervals of a length

@@ -202,6 +202,7 @@ export class Setup implements StepTools {
   readonly stand = (): void =>
     this.run(async (guide) => {
       await guide.stand();
+      this.step.reset?.();
       return 'The robot stands.';
     });
 

@@ -52,8 +52,9 @@ fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
     merge_with_last_part(&other_step).expect_refusal_with("different options");
     // A job that was killed leaves half a line.
     let half_line = &first_part[..first_part.len() / 2];
-    merge_with_last_part(half_line)
-        .expect_refusal_with("lizard: standard input: line 2 is not a part: ");
+    let refusal = merge_with_last_part(half_line).expect_refusal();
+    let expected = "lizard: standard input: line 2 is not a part: ";
+    assert!(refusal.starts_with(expected), "{refusal}");
     run_line("merge", "").expect_refusal_with("there are no parts");
     run_line("merge no-such-part", "").expect_refusal_with("cannot read no-such-part: ");
 }

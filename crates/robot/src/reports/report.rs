@@ -293,7 +293,6 @@ pub(crate) fn format_component(component: Option<f64>, decimals: usize) -> Strin
     }
 }
 
-/// Rounds a value to this number of decimals. A zero loses its sign.
 /// Formats a turn, deg; empty if there is hardly one.
 pub(crate) fn format_turn(turn: Option<f64>) -> String {
     match turn {
@@ -302,6 +301,7 @@ pub(crate) fn format_turn(turn: Option<f64>) -> String {
     }
 }
 
+/// Rounds a value to this number of decimals. A zero loses its sign.
 fn round_to(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding positive zero turns a negative one positive.

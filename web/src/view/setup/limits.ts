@@ -33,10 +33,7 @@ export class LimitsStep implements Step {
       row(
         button(`↺ ${TURN_DEG}°`, () => this.turnServo(tools, currentAngle + TURN_DEG)),
         button(`↻ ${TURN_DEG}°`, () => this.turnServo(tools, currentAngle - TURN_DEG)),
-        button('Stand', () => {
-          this.reset();
-          tools.stand();
-        }),
+        button('Stand', tools.stand),
       ),
       ...(limit
         ? [

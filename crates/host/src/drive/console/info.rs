@@ -12,7 +12,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::connect::ConnectionArgs;
-use super::link::{Link, LinkError};
+use super::link::{BANNER_START, Link, LinkError};
 use crate::Failure;
 use crate::shared::json;
 
@@ -90,9 +90,7 @@ impl BoardInfo {
             Err(error) if error.is_refusal() => None,
             Err(error) => return Err(error.into()),
         };
-        let (firmware, robot) = banner
-            .and_then(Banner::parse)
-            .map_or((None, None), |banner| (Some(banner.version), banner.robot));
+        let (firmware, robot) = banner.map_or((None, None), firmware_and_robot);
         Ok(Self {
             port,
             firmware,
@@ -178,6 +176,19 @@ fn ask_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> 
     })
 }
 
+/// Returns the firmware's version and the robot that a banner names; the version alone for an old firmware, which had
+/// its robot compiled in.
+pub(in crate::drive) fn firmware_and_robot(line: &str) -> (Option<String>, Option<RobotIdentity>) {
+    match Banner::parse(line) {
+        Some(Banner { version, robot }) => (Some(version), robot),
+        None => {
+            let rest = line.strip_prefix(BANNER_START);
+            let version = rest.and_then(|rest| rest.split([' ', ',']).next());
+            (version.map(str::to_owned), None)
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::double::{PAPER_TOML, calibration_of, connect_paper_robot};
@@ -206,5 +217,12 @@ mod tests {
         }
         let after = calibration_of(&mut link);
         assert!(after.is_equivalent_to(&before), "nothing was changed");
+    }
+
+    #[test]
+    fn an_old_firmware_without_a_robot_in_its_banner_is_named_by_its_version() {
+        let old = firmware_and_robot("# lizard 0.1.0, send help for the commands");
+        assert_eq!(old, (Some("0.1.0".to_owned()), None));
+        assert_eq!(firmware_and_robot("hello"), (None, None));
     }
 }

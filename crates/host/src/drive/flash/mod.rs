@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use lizard_robot::{Banner, RobotIdentity};
+use lizard_robot::RobotIdentity;
 use lizard_upload::{
     Event, Image, Loader, Model, PAGE_BYTES, PageCounts, Step, Target, UploadError, upload,
 };
@@ -18,6 +18,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use crate::drive::console::find::{self, FindError, UsbPort};
+use crate::drive::console::info;
 use crate::drive::console::link::{self, Link};
 use crate::drive::console::port::BAUD;
 use crate::shared::json;
@@ -99,8 +100,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
-    let (firmware, robot) =
-        Banner::parse(&banner).map_or((None, None), |banner| (Some(banner.version), banner.robot));
+    let (firmware, robot) = info::firmware_and_robot(&banner);
     let report = FlashReport {
         port,
         bytes_written: page_counts.written * PAGE_BYTES,
