@@ -94,6 +94,26 @@ test('a stick that is deflected by half drives at half the pace, and its release
   await deflectStick(0.5, true);
   await waitForGait(page, 'stop');
   await waitForPace(80);
+  // A pace that the robot has not confirmed yet is halved, too, and not replaced by the previous one.
+  await deflectStick(0);
+  await advance(page, 100);
+  await page.evaluate(() => {
+    const { link } = window.lizard;
+    const { onBytes } = link;
+    const heldBytes = [];
+    link.onBytes = (bytes) => heldBytes.push(bytes);
+    window.releaseBytes = () => {
+      link.onBytes = onBytes;
+      heldBytes.forEach(onBytes);
+    };
+    void window.lizard.drive('speed 60');
+  });
+  await deflectStick(0.5);
+  await advance(page, 100);
+  await page.evaluate(() => window.releaseBytes());
+  await waitForPace(30);
+  await deflectStick(0);
+  await waitForPace(60);
 });
 
 test('the robot stops when the window loses the focus', async () => {
