@@ -38,6 +38,7 @@ test('a new UNO is identified after some seconds, and one button writes the firm
 test('for a board that does not answer, the page asks whether it is a UNO or a Nano', async () => {
   const page = await openWithDeafBoard();
   await waitForText(page, '#problems', /no boot loader answers\. Is it a UNO or a Nano\?/);
+  assert.ok(await page.locator('#problems').isVisible());
 });
 
 test('a board that its port does not reset is queried for its state and tracked', async () => {
