@@ -124,7 +124,7 @@ fn the_page_on_the_twin_shows_the_cost_of_springs() {
     let new_page = fill_block(&page, "springs of robots/paper.toml", &text);
     assert_up_to_date(TWIN_PAGE, &page, &new_page);
     assert!(
-        page.contains(&format!("| mass | {} g, what", ground.body.mass)),
+        page.contains(&format!("| mass | {} g, the mass", ground.body.mass)),
         "{TWIN_PAGE}"
     );
 }
