@@ -28,10 +28,10 @@ pub fn start() {
         asm!(
             "wdr",
             "sts {wdtcsr}, {change}",
-            "sts {wdtcsr}, {guard}",
+            "sts {wdtcsr}, {mode}",
             wdtcsr = const WDTCSR,
             change = in(reg) ENABLE_CHANGE,
-            guard = in(reg) INTERRUPT_THEN_RESET,
+            mode = in(reg) INTERRUPT_THEN_RESET,
             options(nostack, preserves_flags),
         );
     }

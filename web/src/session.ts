@@ -407,6 +407,7 @@ export class Session {
       this.state.banner.value = undefined;
       // The silence of an earlier radio that was out of reach says nothing about the new link.
       this.state.isSilent.value = false;
+      this.state.refusal.value = '';
       this.isWatching = false;
       this.mayAsk = false;
       this.startDialogue();

@@ -187,4 +187,13 @@ test('a HEX file of another program is identified, and written only when the use
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
 });
 
+test('what a board has refused is not shown any more when the board is gone', async () => {
+  const page = await openWithBoard('robot', 8000);
+  await page.evaluate(() => void window.lizard.drive('pose 0 0 0 0'));
+  await waitForText(page, '#drive-said', /^pose 0 0 0 0: /);
+  await page.evaluate(() => window.unplug());
+  await waitForText(page, '#where', /simulated UNO/);
+  assert.equal(await text(page, '#drive-said'), '');
+});
+
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
