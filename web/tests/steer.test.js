@@ -12,13 +12,18 @@ async function openPredicted(options = {}) {
   await page.waitForFunction(() => {
     const buttons = [...document.querySelectorAll('#gaits button[data-command]')];
     const stationaryGaits = ['stand', 'look'];
-    return buttons.length > 5 && buttons.every((button) => stationaryGaits.includes(button.dataset.command) || button.querySelector('small').textContent);
+    // A line that is sent before the banner is lost.
+    return window.lizard.state.bannerCount.value > 0 && buttons.length > 5 && buttons.every((button) => stationaryGaits.includes(button.dataset.command) || button.querySelector('small').textContent);
   });
   return page;
 }
 
-/** Sets the state of the gamepads that the page finds. */
-const setGamepads = (page, ...gamepads) => page.evaluate((gamepads) => (navigator.getGamepads = () => gamepads), gamepads);
+/** Sets the state of the gamepads that the page finds, and waits for the animation frame in which the page reads it. */
+const setGamepads = (page, ...gamepads) =>
+  page.evaluate(async (gamepads) => {
+    navigator.getGamepads = () => gamepads;
+    for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
+  }, gamepads);
 
 const waitForGait = (page, gait) => page.waitForFunction((gait) => document.querySelector('#doing').textContent === gait, gait);
 
